@@ -27,7 +27,9 @@ constexpr std::size_t kMostTrianglesOfRadiosity = 30000;
 
 /// Ladders for which a scene is too large, one line each; only if none was requested by name.
 std::vector<std::string> leftOutOf(const ErrorBenchOptions& options, const Scene& scene) {
-  if (!options.techniques.empty() || scene.triangleCount() <= kMostTrianglesOfRadiosity) return {};
+  if (!options.techniques.empty() || options.floors || !options.rungs.empty() ||
+      scene.triangleCount() <= kMostTrianglesOfRadiosity)
+    return {};
   return {fmt::format(
       "radiosity: left out but for its row as published, which has a coarser model; {} triangles, each at least one "
       "patch, and it is measured up to {} (--techniques radiosity measures it all the same)",
@@ -35,6 +37,7 @@ std::vector<std::string> leftOutOf(const ErrorBenchOptions& options, const Scene
 }
 
 std::vector<std::string> chosenTechniques(const ErrorBenchOptions& options) {
+  if (options.techniques.empty() && (options.floors || !options.rungs.empty())) return {};
   std::vector<std::string> known = ladderTechniques();
   known.emplace_back("path");
   if (options.techniques.empty()) return known;
@@ -64,6 +67,9 @@ std::vector<Rung> rungsOf(const ErrorBenchOptions& options, const std::vector<st
   for (const std::string& t : raster)
     for (Rung& rung : ladderOf(t, options.small, std::max({bounds.extent().x, bounds.extent().y, bounds.extent().z})))
       rungs.push_back(std::move(rung));
+  if (options.floors)
+    for (Rung& rung : floorRungs()) rungs.push_back(std::move(rung));
+  for (const std::string& asked : options.rungs) rungs.push_back(askedRung(asked));
   return rungs;
 }
 
@@ -77,6 +83,8 @@ std::string benchCommand(const ErrorBenchOptions& options) {
     words.insert(words.end(), {"--reference-spp", std::to_string(options.referenceSamples)});
   if (options.small) words.emplace_back("--small");
   if (options.deviations) words.emplace_back("--deviations");
+  if (options.floors) words.emplace_back("--floors");
+  for (const std::string& rung : options.rungs) words.insert(words.end(), {"--rung", rung});
   return shellCommand(words);
 }
 
@@ -97,6 +105,13 @@ void ErrorBenchOptions::declareView(Command app) {
             .delimiter(','),
         {"direct", "rsm", "lpv", "radiosity", "path"});
   app.addFlag("--small", small, "leave out the most expensive rungs");
+  app.addFlag(
+      "--floors", floors,
+      "how much of the error of propagate and gather is the map's, and how much the cells'; without --techniques "
+      "there are no ladders");
+  app.addOption("--rung", rungs,
+                "\"TECHNIQUE [SETTING=VALUE]...\": a picture with these settings besides the ladders; without "
+                "--techniques there are no ladders");
 }
 
 void ErrorBenchOptions::declare(Command app) {
@@ -203,7 +218,8 @@ std::unique_ptr<ErrorBenchResult> runErrorBench(const gl::Context& context, gl::
                          0.3 * options.budget,
                          options.frames,
                          benchCommand(options),
-                         pictureCommand(options)};
+                         pictureCommand(options),
+                         !plan.techniques.empty()};
   writePng(folder / "pictures/reference.png", toneMapped(result->references.all().mean, scene.exposure));
   std::vector<ErrorRow> rows;
   const std::size_t first = isPart ? part->first() : 0, last = isPart ? part->last() : rungs.size() + plan.withPath;
@@ -213,9 +229,12 @@ std::unique_ptr<ErrorBenchResult> runErrorBench(const gl::Context& context, gl::
     if (interrupted()) return result;
     if (auto known = finishedRow(folder, rung)) {
       (*known)["series"] = rung.series;
+      (*known)["step"] = rung.isStep;
       rows.push_back(*known);
     } else {
-      rows.push_back(rung.byReadPixels ? measurePublished(bench, rung) : measureRung(bench, rung));
+      rows.push_back(rung.byReadPixels           ? measurePublished(bench, rung)
+                     : rung.floor != Floor::none ? measureFloor(bench, rung)
+                                                 : measureRung(bench, rung));
     }
     progress.update(static_cast<int>(rows.size()));
   }
@@ -295,6 +314,7 @@ nlohmann::ordered_json errorBenchJson(const ErrorBenchResult& result, const Erro
   json["inside_models"] = insideModelsJson(report.inside);
   json["left_out"] = report.leftOut;
   json["relmse_epsilon"] = measure::kRelativeEpsilon;
+  json["ladders"] = laddersJson(report.rows);
   json["path_slope"] = pathSlopeJson(report.rows);
   json["yardsticks"] = report.yardsticks;
   json["rows"] = report.rows;

@@ -8,11 +8,12 @@ namespace lucerna::demo::bench {
 
 struct ErrorBenchOptions {
   std::string scene, camera, size = "160x90", out, references;
-  std::vector<std::string> techniques;  ///< empty: all
+  std::vector<std::string> techniques;  ///< ladders; empty: all, or none if there are rungs
+  std::vector<std::string> rungs;  ///< pictures besides, as askedRung() takes them
   double budget = 120.0;  ///< seconds for references and path tracing together
   std::uint64_t referenceSamples = 0;  ///< 0: by time
   int frames = 5;
-  bool deviations = false, small = false, quiet = false;
+  bool deviations = false, small = false, floors = false, quiet = false;
   PartOptions part;  ///< of rows; only for the command itself
 
   void declare(Command app);

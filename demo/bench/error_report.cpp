@@ -166,10 +166,8 @@ constexpr const char* kInsideHeading =
 constexpr const char* kInsideNote =
     "Settings of a technique are ranked here, never by the error of all light, where errors of the model and of the "
     "settings may cancel. Marked: on the front of their technique by time and error. "
-    "squares in lit: share of sum d^2 in directly lit pixels. Which part of the error is the reflective shadow map's "
-    "(all "
-    "its points gathered with true visibility) and which is storage's and lookup's "
-    "(exact radiance in the cells) is not measured: the bench has no such floors.";
+    "squares in lit: share of sum d^2 in directly lit pixels. Floors (--floors): what is left of the error without "
+    "cells, and of the exact radiance in them.";
 
 std::string notes(const ErrorReport& report) {
   std::string line = fmt::format("Renderer {}\nHost     {}, {}\nBench    {}\n", report.renderer, report.host,
@@ -188,6 +186,27 @@ std::string notes(const ErrorReport& report) {
         m > 0.0 ? 100.0 * std::sqrt(noise.variance) / m : 0.0);
   }
   return line;
+}
+
+constexpr const char* kLaddersNote =
+    "More is better: relative L2 along each ladder, inside its model, or of all light where its rungs have several. "
+    "Worse: the error rises by more than two standard errors, which the reference's noise gives.";
+
+HtmlPage::Table laddersTable(const std::vector<Ladder>& ladders) {
+  HtmlPage::Table table{{"ladder", "errors, %", "worse"}, {}, {}};
+  for (const Ladder& ladder : ladders) {
+    std::string errors, worse;
+    for (std::size_t i = 0; i < ladder.errors.size(); ++i) {
+      const double e = 100.0 * ladder.errors[i];
+      errors += (i == 0 ? "" : ", ") + (std::isfinite(e) ? fmt::format("{:.3g}", e) : std::string("noise"));
+    }
+    for (const Ladder::Rise& rise : ladder.rises)
+      worse += fmt::format("{}{} by {:.2g} % +- {:.1g}", worse.empty() ? "" : "; ", ladder.labels[rise.to],
+                           100.0 * rise.by, 100.0 * rise.error);
+    table.rows.push_back({ladder.series, errors, worse.empty() ? "never" : worse});
+    table.marked.push_back(ladder.rises.empty());
+  }
+  return table;
 }
 
 std::string modelErrorText(const ModelError& m) {
@@ -249,6 +268,8 @@ std::string terminalTable(const ErrorReport& report) {
   if (!report.inside.empty()) result += fmt::format("\n{}.\n{}\n", kInsideHeading, kInsideNote);
   for (const InsideModel& model : report.inside)
     result += fmt::format("\n{}\n{}", model.name, textOf(insideTable(report, model)));
+  if (const std::vector<Ladder> ladders = laddersOf(report.rows); !ladders.empty())
+    result += fmt::format("\n{}\n{}", kLaddersNote, textOf(laddersTable(ladders)));
   if (!report.model.empty()) result += "\nWhat the models leave out, whatever the settings:\n";
   for (const ModelError& m : report.model) result += "  " + modelText(m) + "\n";
   return result;
@@ -293,6 +314,21 @@ nlohmann::ordered_json pathSlopeJson(const std::vector<ErrorRow>& rows) {
           {"processor_time_error", s->processor.error},
           {"from", s->first},
           {"to", s->last}};
+}
+
+nlohmann::ordered_json laddersJson(const std::vector<ErrorRow>& rows) {
+  auto json = nlohmann::ordered_json::array();
+  for (const Ladder& ladder : laddersOf(rows)) {
+    auto rises = nlohmann::ordered_json::array();
+    for (const Ladder::Rise& rise : ladder.rises)
+      rises.push_back({{"to", ladder.labels[rise.to]}, {"by", rise.by}, {"error", rise.error}});
+    json.push_back({{"series", ladder.series},
+                    {"model", ladder.model.empty() ? "all light" : ladder.model},
+                    {"labels", ladder.labels},
+                    {"l2", ladder.errors},
+                    {"rises", rises}});
+  }
+  return json;
 }
 
 nlohmann::ordered_json modelJson(const std::vector<ModelError>& model) {
@@ -501,6 +537,11 @@ void addToPage(HtmlPage& page, const fs::path& folder, const ErrorReport& report
   for (const InsideModel& model : report.inside) {
     page.paragraph(model.name);
     page.table(insideTable(report, model));
+  }
+  if (const std::vector<Ladder> ladders = laddersOf(report.rows); !ladders.empty()) {
+    page.heading("More is better");
+    page.paragraph(kLaddersNote);
+    page.table(laddersTable(ladders));
   }
   if (!report.model.empty()) {
     HtmlPage::Table model{{"left out", "of", "relative L2", "bias"}, {}, {}};

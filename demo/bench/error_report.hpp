@@ -27,6 +27,7 @@ std::string csvOf(const ErrorReport& report);
 /// Exponents of the error of the path tracer's corrected ladder; null with fewer than three rows above the reference's
 /// noise.
 nlohmann::ordered_json pathSlopeJson(const std::vector<ErrorRow>& rows);
+nlohmann::ordered_json laddersJson(const std::vector<ErrorRow>& rows);
 nlohmann::ordered_json modelJson(const std::vector<ModelError>& model);
 nlohmann::ordered_json insideModelsJson(const std::vector<InsideModel>& inside);
 nlohmann::ordered_json referencesJson(const References& references);

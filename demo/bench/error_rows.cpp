@@ -15,8 +15,10 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <functional>
 #include <map>
 #include <set>
 
@@ -246,7 +248,7 @@ void addProvenance(const ErrorBench& bench, ErrorRow& row) {
   row["renderer"] = bench.context.capabilities().renderer;
   row["driver"] = bench.context.capabilities().version;
   row["cpu"] = cpuName();
-  row["command"] = bench.command + " --techniques " + technique;
+  row["command"] = bench.command + (bench.hasLadders ? " --techniques " + technique : "");
   std::vector<std::string> words{"--technique", technique, "--fidelity", row.at("fidelity").get<std::string>()};
   for (const auto& deviation : row.at("deviations"))
     words.insert(words.end(), {"--deviation", deviation.get<std::string>()});
@@ -296,11 +298,11 @@ void keepRow(const ErrorBench& bench, const Rung& rung, const ErrorRow& row) {
   writeFileAtomically(rowFile(bench.folder, rung.name()), row.dump(1) + "\n");
 }
 
-ErrorRow measureRung(const ErrorBench& bench, const Rung& rung, const std::vector<std::string>& more) {
-  PictureOptions options = rung.picture;
-  options.settings.insert(options.settings.end(), more.begin(), more.end());
-  const RenderSettings settings = settingsOf(bench, options, Component::all);
-  const Timed timed = render(bench, settings, bench.frames);
+namespace {
+
+/// The row of a measurement. indirect: the picture of indirect light alone, made if it is needed.
+ErrorRow rowOf(const ErrorBench& bench, const Rung& rung, const PictureOptions& options, const Timed& timed,
+               const std::function<Image()>& indirect) {
   const bool software = bench.context.capabilities().softwareRenderer;
   const double wall = median(timed.wallMs);
 
@@ -310,6 +312,7 @@ ErrorRow measureRung(const ErrorBench& bench, const Rung& rung, const std::vecto
   row["settings"] = options.settings;
   row["deviations"] = options.deviations;
   row["series"] = rung.series;
+  row["step"] = rung.isStep;
   row["label"] = rung.label();
   row["ms"] = software || timed.queryMs == 0.0 ? wall : timed.queryMs;
   row["wall_ms"] = wall;
@@ -329,8 +332,7 @@ ErrorRow measureRung(const ErrorBench& bench, const Rung& rung, const std::vecto
   const LightPaths model = modelOf(rung, bench.references.lights).paths;
   if (model.lights.any() && model != LightPaths{Transport::all, bench.references.lights}) {
     const bool whole = showsLights(model.transport);
-    const Image picture =
-        whole ? timed.picture : render(bench, settingsOf(bench, options, Component::indirect), 1).picture;
+    const Image picture = whole ? timed.picture : indirect();
     row["inside_model"] =
         errorsJson(bench.references.judge(picture, bench.references.inside(model), onSurfacesAlone(model)));
     row["inside_model"]["model"] = nameOf(model);
@@ -341,6 +343,45 @@ ErrorRow measureRung(const ErrorBench& bench, const Rung& rung, const std::vecto
   addProvenance(bench, row);
   keepRow(bench, rung, row);
   return row;
+}
+
+}  // namespace
+
+ErrorRow measureRung(const ErrorBench& bench, const Rung& rung, const std::vector<std::string>& more) {
+  PictureOptions options = rung.picture;
+  options.settings.insert(options.settings.end(), more.begin(), more.end());
+  const Timed timed = render(bench, settingsOf(bench, options, Component::all), bench.frames);
+  return rowOf(bench, rung, options, timed,
+               [&] { return render(bench, settingsOf(bench, options, Component::indirect), 1).picture; });
+}
+
+ErrorRow measureFloor(const ErrorBench& bench, const Rung& rung) {
+  // The scene with the lights of the technique's model alone.
+  const measure::LightKinds lights = modelOf(rung, bench.references.lights).paths.lights;
+  const Scene scene = measure::litBy(bench.scene, lights);
+  RenderSettings settings = settingsOf(bench, rung.picture, Component::indirect);
+  settings.lpv.transport = rung.floor == Floor::map ? LpvTransport::gather : LpvTransport::rays;
+  settings.lpv.samples = settings.lpv.rays;  // what the cells' receivers find is not shown
+  Timed timed;
+  auto start = Clock::now();
+  Renderer renderer(bench.context, bench.programs, scene, settings);
+  renderer.renderToTheEnd(bench.camera);
+  gl::finish();
+  timed.setupMs = msSince(start);
+  start = Clock::now();
+  const std::clock_t cpuStart = std::clock();
+  const ReceiversFrame* frame = renderer.receiversFrame();
+  constexpr int kPaths = 2048;
+  const Image indirect =
+      !frame ? Image(bench.size.x, bench.size.y)
+             : measure::lit(bench.references.albedo,
+                            rung.floor == Floor::map ? frame->gatheredAtPixels() : frame->readFromCells(kPaths));
+  timed.wallMs = {msSince(start)};
+  timed.cpuMs = {1e3 * static_cast<double>(std::clock() - cpuStart) / CLOCKS_PER_SEC};
+  timed.gpuBytes = renderer.gpuBytes();
+  timed.picture = render(bench, settingsOf(bench, rung.picture, Component::direct), 1).picture;
+  for (std::size_t i = 0; i < indirect.pixels.size(); ++i) timed.picture.pixels[i] += indirect.pixels[i];
+  return rowOf(bench, rung, rung.picture, timed, [&] { return indirect; });
 }
 
 namespace {
@@ -388,6 +429,34 @@ void markFront(std::vector<ErrorRow>& rows) {
     rows[i]["pareto"] = static_cast<bool>(front[i]);
     rows[i]["front"] = rank;
   }
+}
+
+std::vector<Ladder> laddersOf(const std::vector<ErrorRow>& rows) {
+  std::vector<Ladder> ladders;
+  for (std::size_t first = 0, last = 0; first < rows.size(); first = last) {
+    const std::string series = rows[first].at("series").get<std::string>();
+    while (last < rows.size() && rows[last].at("series") == series) ++last;
+    const auto is = [&](auto&& what) { return std::all_of(&rows[first], &rows[0] + last, what); };
+    if (last - first < 2 || !is([](const ErrorRow& row) { return row.value("step", false); })) continue;
+    const auto modelOfRow = [](const ErrorRow& row) {
+      return row.contains("inside_model") ? row.at("inside_model").at("model").get<std::string>() : std::string();
+    };
+    Ladder ladder{series, modelOfRow(rows[first]), {}, {}, {}};
+    if (!is([&](const ErrorRow& row) { return modelOfRow(row) == ladder.model; })) ladder.model.clear();
+    double before = NAN, beforeError = NAN;
+    for (std::size_t i = first; i < last; ++i) {
+      const ErrorRow& errors = ladder.model.empty() ? rows[i] : rows[i].at("inside_model");
+      const double error = number(errors, "l2_error"),
+                   value = errors.value("at_noise", false) ? NAN : number(errors, "l2");
+      ladder.labels.push_back(rows[i].at("label").get<std::string>());
+      ladder.errors.push_back(value);
+      if (measure::isBelow(before, beforeError, value, error))
+        ladder.rises.push_back({i - first, value - before, std::hypot(error, beforeError)});
+      before = value, beforeError = error;
+    }
+    ladders.push_back(std::move(ladder));
+  }
+  return ladders;
 }
 
 }  // namespace lucerna::demo::bench

@@ -26,6 +26,7 @@ struct ErrorBench {
   std::string command = {};  ///< repeats the measurement; its --techniques is filled in per row
   std::string pictureCommand =
       {};  ///< `lucerna render` of the same scene, view and size; technique and settings are filled in per row
+  bool hasLadders = true;  ///< false: only rungs that were asked for; the command has no --techniques
 };
 
 /// Adds a row's provenance: command, date (UTC), program and commit. The command gets the technique's --techniques.
@@ -43,6 +44,8 @@ void claimFolder(const std::filesystem::path& folder, const std::string& identit
 std::optional<ErrorRow> finishedRow(const std::filesystem::path& folder, const Rung& rung);
 /// Renders, judges, writes picture and row. `more`: settings that the rung's name does not include.
 ErrorRow measureRung(const ErrorBench& bench, const Rung& rung, const std::vector<std::string>& more = {});
+/// A floor: the indirect light is measured alone, and the technique's own direct light is added.
+ErrorRow measureFloor(const ErrorBench& bench, const Rung& rung);
 /// A rung by glReadPixels: the published program solves the scene, and its solution is displayed and judged. "setup_ms"
 /// includes the solving, "published" describes the solution. Of a scene with too many triangles a coarser model is
 /// solved and drawn (radiosity/original/coarse_scene.hpp). Empty, with nothing stored, if interrupted.
@@ -80,6 +83,20 @@ TechniqueModel modelOf(const Rung& rung, measure::LightKinds scene);
 /// Fills "inside_front": whether the row is on the front of its technique and model by `ms` and the l2 inside the model
 /// (true without a model). Then "pareto" by `ms` and `l2` among those, and "front": 1 for the fastest on it, 0 off it.
 void markFront(std::vector<ErrorRow>& rows);
+/// "More is better": for every series whose rungs are steps, its errors in order (inside the model where all rungs have
+/// the same, else of all light; null at the reference's noise), and the steps after which the error is larger by more
+/// than two standard errors, which the reference's noise gives.
+struct Ladder {
+  std::string series, model;  ///< model: empty for all light
+  std::vector<std::string> labels;
+  std::vector<double> errors;  ///< relative L2; NaN at the reference's noise
+  struct Rise {
+    std::size_t to = 0;  ///< index of the worse one, the other is before it
+    double by = 0.0, error = 0.0;  ///< difference and its standard error
+  };
+  std::vector<Rise> rises;
+};
+std::vector<Ladder> laddersOf(const std::vector<ErrorRow>& rows);
 /// The value by which the row is ranked: its l2 or nrmse, or the smallest that the reference can resolve.
 double rankedError(const ErrorRow& row, const char* measure);
 /// A number of a row; NaN if it is null or missing.

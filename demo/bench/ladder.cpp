@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <sstream>
 
 namespace lucerna::demo::bench {
 
@@ -18,6 +19,7 @@ Rung rung(const std::string& technique, const std::string& series, std::vector<s
   r.picture.technique = technique;
   r.picture.fidelity = fidelity;
   r.picture.settings = std::move(settings);
+  r.isStep = !series.empty() && series != "gather visibility" && fidelity == "corrected";
   return r;
 }
 
@@ -72,6 +74,11 @@ std::vector<Rung> lpvLadder(bool shrink) {
     if (!shrink || samples < 1024) rays("samples", fmt::format("lpv.samples={}", samples));
   for (int cells : {16, 32, 64})
     if (!shrink || cells < 64) rays("cells", fmt::format("lpv.cells={}", cells));
+  // Each cascade more halves the finest cells.
+  for (int cascades : {2, 3, 4})
+    if (!shrink)
+      rungs.push_back(rung("lpv", "rays cascades",
+                           {"lpv.transport=rays", "lpv.cells=64", fmt::format("lpv.cascades={}", cascades)}));
   for (const char* bounces : {"1", "2", "all"})
     if (!shrink || bounces[0] != '2') rays("bounces", fmt::format("lpv.bounces={}", bounces), false);
   return rungs;
@@ -113,6 +120,8 @@ std::string Rung::label() const {
   for (const std::string& setting : picture.settings)
     text += " " + (setting.starts_with(prefix) ? setting.substr(prefix.size()) : setting);
   for (const std::string& deviation : picture.deviations) text += " " + deviation;
+  if (floor == Floor::map) text += ", floor: the map at each pixel";
+  if (floor == Floor::cells) text += ", floor: exact radiance in the cells";
   if (byReadPixels) text += " by glReadPixels";
   return text;
 }
@@ -131,6 +140,36 @@ std::vector<Rung> ladderOf(const std::string& technique, bool shrink, double lon
   throwBadInput("--techniques {}: unknown; expected one of {}", technique, known);
 }
 
+std::vector<Rung> floorRungs() {
+  const auto of = [](Floor floor, std::vector<std::string> settings) {
+    Rung r = rung("lpv", "floors", std::move(settings));
+    r.isStep = false;
+    r.floor = floor;
+    return r;
+  };
+  const std::string propagate = "lpv.transport=propagate", gather = "lpv.transport=gather", once = "lpv.bounces=1";
+  return {of(Floor::map, {propagate}),
+          of(Floor::cells, {propagate}),
+          of(Floor::none, {propagate}),
+          of(Floor::map, {gather, once}),
+          of(Floor::none, {"lpv.transport=rays", once, "lpv.samples=2048"}),
+          of(Floor::none, {gather, once})};
+}
+
+Rung askedRung(const std::string& text) {
+  std::istringstream words(text);
+  Rung asked;
+  words >> asked.picture.technique;
+  const std::vector<std::string> known = ladderTechniques();
+  if (std::find(known.begin(), known.end(), asked.picture.technique) == known.end())
+    throwBadInput("--rung '{}': expected \"TECHNIQUE [SETTING=VALUE]...\" with one of {}", text,
+                  fmt::join(known, ", "));
+  for (std::string word; words >> word;) asked.picture.settings.push_back(word);
+  asked.series = asked.picture.technique + " as asked";
+  asked.picture.parse();  // throws for settings that do not exist
+  return asked;
+}
+
 std::vector<Rung> deviationRungs(const std::vector<std::string>& techniques) {
   std::vector<Rung> rungs;
   for (const std::string& technique : techniques) {
@@ -138,6 +177,7 @@ std::vector<Rung> deviationRungs(const std::vector<std::string>& techniques) {
     rungs.push_back(
         rung(technique, "corrected",
              technique == "lpv" ? std::vector<std::string>{"lpv.transport=propagate"} : std::vector<std::string>{}));
+    rungs.back().isStep = false;
     for (const Deviation& deviation : allDeviations()) {
       // A deviation's name begins with the technique that it belongs to; the light propagation volume also reads the
       // reflective shadow map's flux.
@@ -145,6 +185,8 @@ std::vector<Rung> deviationRungs(const std::vector<std::string>& techniques) {
       const bool reads = name.starts_with(prefixOf(technique)) || (technique == "lpv" && name == "rsm.flux-cosine");
       if (!reads) continue;
       Rung r = rung(technique, name, {});
+      r.isStep = false;
+      r.isStep = false;
       r.picture.deviations = {name + "=on"};
       rungs.push_back(r);
     }

@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "forward/light_views.hpp"
 #include "gl/pass.hpp"
+#include "lpv/grid.hpp"
 #include "rays/light_table.hpp"
 #include "shared/bindings.h"
 #include "shared/lpv_receivers.h"
@@ -14,13 +15,11 @@ namespace lucerna {
 
 namespace {
 
-constexpr GLuint kReceiversBuffer = 0, kSlotsBuffer = 1, kKeptBuffer = 2, kWorkBeforeBuffer = 3,
-                 kWorkBuffer = 5;  // GL_SHADER_STORAGE_BUFFER
+constexpr GLuint kSlotsBuffer = 1, kKeptBuffer = 2, kWorkBeforeBuffer = 3;  // GL_SHADER_STORAGE_BUFFER
 constexpr GLuint kSlotsUnit = 0, kKeysUnit = 1, kSeenUnit = 6;
 constexpr std::uint32_t kSegmentsOfAll = 64;  // of a path that meets no receivers; it misses a share of albedo^64
 constexpr float kFullPaths = 256.0f;  // from here on: full weight, no averaging with neighbours
 constexpr std::uint32_t kSoftwareTurns = 2000, kMostTurns = 1u << 16;  // like the path tracer's, less one segment
-constexpr std::array<GLuint, 9> kNoWork{0, 1, 1, 0, 0, 1, 1, 0, 0};
 // Of a lane, approximately (gl/pieces.hpp): of a path, or of gather four rays, or one ray and nodes of the tree.
 constexpr std::size_t kTurnsOfPath = 256;
 constexpr std::size_t kMostPaths = (std::size_t{1} << 28) / kTurnsOfPath;  // per submission
@@ -117,19 +116,14 @@ LpvReceivers::LpvReceivers(gl::ProgramLibrary& programs, const gl::Capabilities&
   path_.turns = capabilities.softwareRenderer ? kSoftwareTurns : kMostTurns;
 
   const gl::ShaderFlags common = lookupFlags(settings);
-  const auto with = [](gl::ShaderFlags flags, const gl::ShaderFlags& more) {
-    flags.insert(flags.end(), more.begin(), more.end());
-    return flags;
-  };
-  const gl::ShaderFlags rays =
-      with(with(common, scene_.flags()),
-           {{"LINEAR_SEEDS", 0}, {"GLOSSY", 0}, {"SHARED_STACK", scene_.rays().sharedStack()}, {"PATHS", lanes}});
+  const gl::ShaderFlags rays = rayFlags(lanes);
   mark_ = &programs.loadCompute("lpv mark receivers", "lpv/receivers/mark.comp", with(common, {{"CLAIM", 0}}));
   claim_ = &programs.loadCompute("lpv claim receivers", "lpv/receivers/mark.comp", with(common, {{"CLAIM", 1}}));
   keep_ = &programs.loadCompute("lpv keep receivers", "lpv/receivers/keep.comp", common);
   list_ = &programs.loadCompute("lpv list receivers", "lpv/receivers/list.comp", rays);
   if (settings.transport == LpvTransport::rays)
-    paths_ = &programs.loadCompute("lpv paths", "lpv/receivers/paths.comp", with(rays, {{"CACHED", cached_}}));
+    paths_ = &programs.loadCompute("lpv paths", "lpv/receivers/paths.comp",
+                                   with(rays, {{"CACHED", cached_}, {"FROM_CELLS", 0}}));
   store_ = &programs.loadCompute("lpv store receivers", "lpv/receivers/store.comp", common);
   if (settings.transport == LpvTransport::gather)
     gather_ = std::make_unique<LightGather>(programs, capabilities, scene, origin, settings, light, scene_, common);
@@ -138,6 +132,11 @@ LpvReceivers::LpvReceivers(gl::ProgramLibrary& programs, const gl::Capabilities&
 
 gl::ShaderFlags LpvReceivers::lookupFlags(const LpvSettings& settings) {
   return {{"LPV_FULL_FLOAT", settings.storage == LpvSettings::Storage::full}};
+}
+
+gl::ShaderFlags LpvReceivers::rayFlags(int lanes) const {
+  return with(with(lookupFlags(settings_), scene_.flags()),
+              {{"LINEAR_SEEDS", 0}, {"GLOSSY", 0}, {"SHARED_STACK", scene_.rays().sharedStack()}, {"PATHS", lanes}});
 }
 
 void LpvReceivers::forget() {
@@ -233,7 +232,7 @@ void LpvReceivers::mark(const Inputs& inputs) {
 // Lists visible receivers with fewer paths than `target`.
 void LpvReceivers::list(int target, bool countsFading) {
   const std::array<GLuint, 5> none{0, 1, 1, 0, frame_};
-  work_[0].upload(4 * sizeof(GLuint), sizeof none, none.data());
+  work_[0].upload(kLitGroups, sizeof none, none.data());
   bindReceivers();
   lpvConstantsBefore_.bindUniform(BLOCK_LPV);  // new receivers look up the light shown in their place before
   irradiance_.bind(UNIT_RECEIVED);
@@ -254,7 +253,7 @@ void LpvReceivers::light(int target) {
   const gl::ComputePass pass("lpv paths", gl::Barrier::storage);
   paths_->use();
   irradiance_.bind(UNIT_RECEIVED);
-  pass.dispatchIndirect(work_[0], 4 * sizeof(GLuint));
+  pass.dispatchIndirect(work_[0], kLitGroups);
 }
 
 // New receivers gather all their light; then they are final while the maps stay.
@@ -262,7 +261,7 @@ void LpvReceivers::gather(const Inputs& inputs) {
   bindReceivers();
   gather_->update(inputs.maps, inputs.mapsAreNew);
   list(1);
-  gather_->gather(inputs.maps, work_[0], 4 * sizeof(GLuint));
+  gather_->gather(inputs.maps, work_[0], kLitGroups);
 }
 
 void LpvReceivers::store(float mostChange) {

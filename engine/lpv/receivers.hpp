@@ -13,6 +13,7 @@
 // section "Receivers".
 #pragma once
 
+#include "base/image.hpp"
 #include "forward/visible_surfaces.hpp"
 #include "gl/context.hpp"
 #include "gl/program.hpp"
@@ -25,6 +26,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -81,6 +83,15 @@ class LpvReceivers {
   /// Those that have found light or darkness, as of the last update. Reads back: waits for the GPU.
   std::vector<Shown> shown() const;
 
+  // Floors: what light would be shown without a part of what a technique does (README.md, "Whose error it is"). For
+  // the surfaces that the pixels of the last update's view show; W per square scene unit, 0 where there is none. They
+  // compile, allocate, and wait for the GPU.
+  /// As LpvTransport::gather finds it, at each pixel instead of in cells.
+  Image gatheredAtPixels(const std::vector<ReflectiveShadowMap::Outputs>& maps) const;
+  /// From the exact radiance in the middle of the cells around, as LpvTransport::propagate reads it: two bands of
+  /// spherical harmonics, trilinear. paths: per pixel, rounded up to LPV_LANES.
+  Image readFromCells(int paths) const;
+
   void collect(bool wait = false);
   const Counts& counts() const { return counts_; }
   const LpvSettings& settings() const { return settings_; }
@@ -91,6 +102,10 @@ class LpvReceivers {
   std::size_t gpuBytes() const;
 
  private:
+  static constexpr GLuint kReceiversBuffer = 0, kWorkBuffer = 5;  // GL_SHADER_STORAGE_BUFFER
+  static constexpr std::array<GLuint, 9> kNoWork{0, 1, 1, 0, 0, 1, 1, 0, 0};  ///< receivers/work.glsl
+  static constexpr std::size_t kLitGroups = 4 * sizeof(GLuint);  ///< in it
+
   void place(const Inputs& inputs);
   void keep();
   void mark(const Inputs& inputs);
@@ -99,6 +114,8 @@ class LpvReceivers {
   void gather(const Inputs& inputs);
   void store(float mostChange);
   void bindReceivers() const;
+  gl::ShaderFlags rayFlags(int lanes) const;
+  Image atPixels(int rounds, const std::function<void(const gl::Buffer& work)>& light) const;
 
   LpvSettings settings_;
   gl::ProgramLibrary* programs_;

@@ -210,6 +210,15 @@ glm::dvec3 constantIrradiance(const Image& albedo, const Image& picture) {
   return irradiance;
 }
 
+Image lit(const Image& albedo, const Image& irradiance) {
+  CHECK(albedo.pixels.size() == irradiance.pixels.size(), "{} and {} pixels", albedo.pixels.size(),
+        irradiance.pixels.size());
+  Image result = albedo;
+  for (std::size_t i = 0; i < result.pixels.size(); ++i)
+    result.pixels[i] *= irradiance.pixels[i] / static_cast<float>(kPi);
+  return result;
+}
+
 Image litByConstant(const Image& albedo, const glm::dvec3& irradiance) {
   Image result = albedo;
   for (glm::vec3& p : result.pixels) p = glm::vec3(glm::dvec3(p) * irradiance / kPi);

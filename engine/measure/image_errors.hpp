@@ -92,6 +92,8 @@ PartErrors partErrorsOf(const Image& image, const Image& reference, const Image&
 /// The irradiance E, channel by channel, at least 0, for which albedo E / pi is closest to the picture by least
 /// squares: E = pi sum(a r) / sum(a^2).
 glm::dvec3 constantIrradiance(const Image& albedo, const Image& picture);
+/// albedo E / pi: Lambertian surfaces under that irradiance.
+Image lit(const Image& albedo, const Image& irradiance);
 /// albedo E / pi: Lambertian surfaces under the same irradiance everywhere.
 Image litByConstant(const Image& albedo, const glm::dvec3& irradiance);
 

@@ -20,6 +20,7 @@ class LightMaps {
 
   /// One per light: the sun, the spots, the omnidirectional lights. Stage: rsm, if they are drawn.
   const std::vector<ReflectiveShadowMap::Outputs>& record(gl::TimeQuery& timer);
+  const std::vector<ReflectiveShadowMap::Outputs>& outputs() const { return outputs_; }
   bool willBeDrawn() const { return !(parts_.settings.reuse && made_); }
   void forget() { made_ = false; }
   std::size_t count() const { return maps_.size(); }

@@ -38,6 +38,11 @@ class ReceiversFrame {
 
   bool hasMaps() const { return maps_ && maps_->count() > 0; }
   const LpvReceivers& receivers() const { return receivers_; }
+  /// Floors of the last view (LpvReceivers). The first: only with LpvTransport::gather.
+  Image gatheredAtPixels() const {
+    return receivers_.gatheredAtPixels(maps_ ? maps_->outputs() : std::vector<ReflectiveShadowMap::Outputs>{});
+  }
+  Image readFromCells(int paths) const { return receivers_.readFromCells(paths); }
   double largestTurns() const { return receivers_.mostTurns(); }
   void addStagePictures(std::vector<StagePicture>& pictures) const {
     if (maps_) maps_->addStagePictures(pictures);

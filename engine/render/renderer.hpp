@@ -85,6 +85,7 @@ class Renderer {
   const RenderSettings& settings() const { return settings_; }
   std::vector<StagePicture> stagePictures() const;
   const LpvReceivers* receivers() const { return receivers_ ? &receivers_->receivers() : nullptr; }
+  const ReceiversFrame* receiversFrame() const { return receivers_ ? &*receivers_ : nullptr; }
   /// Whether more frames of the same view would look the same: nothing accumulates any more.
   bool isSettled() const { return (!receivers_ || receivers_->isSettled()) && (!path_ || path_->isSettled()); }
   /// Drops everything kept from frame to frame: the next frame starts like the first.

@@ -167,10 +167,54 @@ TEST_F(Measure, BenchErrorReportsAndGoesOnWhereItWas) {
   EXPECT_TRUE(nlohmann::json::accept(readFileText(rows[1])));
   EXPECT_EQ(json("error.json").at("rows").size(), report.at("rows").size());
 
+  // More is better, or the ladder says where not: by more than twice what the reference's noise gives.
+  const nlohmann::json ladders = json("error.json").at("ladders");
+  ASSERT_EQ(ladders.size(), 2u);
+  for (const auto& ladder : ladders) {
+    std::vector<const nlohmann::json*> steps;
+    for (const auto& row : report.at("rows"))
+      if (row.at("series") == ladder.at("series")) steps.push_back(&row.at("inside_model"));
+    ASSERT_EQ(steps.size(), ladder.at("labels").size());
+    std::size_t rises = 0;
+    for (std::size_t k = 1; k < steps.size(); ++k) {
+      const auto of = [&](std::size_t i, const char* key) { return steps[i]->at(key).get<double>(); };
+      if (steps[k]->at("at_noise") == true || steps[k - 1]->at("at_noise") == true) continue;
+      rises += of(k, "l2") - of(k - 1, "l2") > 2.0 * std::hypot(of(k, "l2_error"), of(k - 1, "l2_error"));
+    }
+    EXPECT_EQ(ladder.at("rises").size(), rises) << ladder;
+  }
+
   // Another scene or size is another bench.
   expectOneLine(RUN_LUCERNA("bench error '" + path("scene.obj") + "' --size 32x18 --reference-spp 16 --out '" +
                             path("out") + "'"),
                 2, {"another bench", "out"});
+}
+
+TEST_F(Measure, PicturesThatAreAskedForAndFloors) {
+  const std::string bench = "bench error '" + path("scene.obj") +
+                            "' --size 32x16 --reference-spp 2048 --frames 1 --out '" + path("out") + "' --json '" +
+                            path("error.json") + "' ";
+  ASSERT_EQ(RUN_LUCERNA(bench + "--rung 'rsm rsm.samples=20 rsm.interpolate=off' --floors").exitCode, 0);
+  std::map<std::string, nlohmann::json> rows;
+  const nlohmann::json report = json("error.json");
+  for (const auto& row : report.at("rows")) rows[row.at("label")] = row;
+  EXPECT_EQ(rows.size(), 7u);
+  ASSERT_TRUE(rows.contains("rsm samples=20 rsm.interpolate=off") || rows.contains("rsm samples=20 interpolate=off"));
+  for (const char* of : {"lpv transport=propagate", "lpv transport=gather bounces=1"}) {
+    const std::string floor = std::string(of) + ", floor: the map at each pixel";
+    ASSERT_TRUE(rows.contains(of) && rows.contains(floor)) << of;
+    const auto inside = [&](const std::string& label) { return rows.at(label).at("inside_model"); };
+    EXPECT_EQ(inside(of).at("model"), inside(floor).at("model"));
+    // Gathering at each pixel is far better than propagation. Here it is as good as gathering in cells, since a plain
+    // wall needs no finer ones. All light is the technique's direct light plus what is measured.
+    const double most = std::string_view(of).ends_with("propagate") ? 0.2 : 1.25;
+    EXPECT_LT(inside(floor).at("l2").get<double>(), most * inside(of).at("l2").get<double>()) << of;
+    EXPECT_LT(rows.at(floor).at("l2").get<double>(), 0.5) << of;
+  }
+  EXPECT_TRUE(rows.contains("lpv transport=propagate, floor: exact radiance in the cells"));
+  EXPECT_NE(report.at("command").get<std::string>().find("--floors --rung"), std::string::npos);
+  expectOneLine(RUN_LUCERNA(bench + "--rung 'smoke a=1'"), 2, {"--rung", "smoke", "rsm"});
+  expectOneLine(RUN_LUCERNA(bench + "--rung 'rsm rsm.samplez=1'"), 2, {"rsm.samplez"});
 }
 
 // A sun and an emissive lamp. RSM and LPV know no emissive surfaces: what they are judged by holds none of the lamp's

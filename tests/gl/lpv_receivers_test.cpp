@@ -25,8 +25,10 @@
 #include <cmath>
 #include <functional>
 #include <iostream>
+#include <map>
 #include <numbers>
 #include <random>
+#include <tuple>
 
 namespace lucerna {
 namespace {
@@ -218,17 +220,21 @@ struct FloorAndWall {
     s.lpv.cascades.cells = 32;
     return s;
   }
-  /// Irradiance of a point of the wall from a floor of `radiance(x, z)`, by midpoints in double.
-  static double irradiance(const glm::dvec3& p, const std::function<double(double, double)>& radiance) {
+  /// Over the floor, by midpoints in double: of what a point there gives, at d from `from`, per area.
+  static double integral(const glm::dvec3& from, const std::function<double(const glm::dvec3& d, double d2)>& given) {
     constexpr int kSteps = 120;
     double sum = 0.0;
     for (int i = 0; i < kSteps; ++i)
       for (int j = 0; j < kSteps; ++j) {
-        const glm::dvec3 q((i + 0.5) * 2.0 / kSteps, 0.0, (j + 0.5) * 2.0 / kSteps - 1.0), d = q - p;
-        const double d2 = glm::dot(d, d);
-        sum += radiance(q.x, q.z) * d.x * -d.y / (d2 * d2);
+        const glm::dvec3 d = glm::dvec3((i + 0.5) * 2.0 / kSteps, 0.0, (j + 0.5) * 2.0 / kSteps - 1.0) - from;
+        sum += given(d, glm::dot(d, d));
       }
     return sum * 4.0 / (kSteps * kSteps);
+  }
+  /// Irradiance of a point of the wall from a floor of `radiance(x, z)`.
+  static double irradiance(const glm::dvec3& p, const std::function<double(double, double)>& radiance) {
+    return integral(
+        p, [&](const glm::dvec3& d, double d2) { return radiance(p.x + d.x, p.z + d.z) * d.x * -d.y / (d2 * d2); });
   }
   /// The picture's pixels that show the wall at least 0.1 above the plate, beside what is expected there.
   void expect(const Image& seen, const std::function<double(const glm::dvec3&)>& irradianceAt, const char* what,
@@ -361,6 +367,60 @@ TEST_F(LpvGatherGl, AWallBesideAFloorUnderTheSunALampAndASpot) {
         },
         "a floor under an omnidirectional lamp, gathered", 0.03);
   }
+}
+
+// ---- floors: the same without the cells, and from the exact radiance in them
+
+/// As if the wall's albedo of 1/2 had been applied.
+Image ofWall(Image irradiance) {
+  for (glm::vec3& p : irradiance.pixels) p *= static_cast<float>(0.5 / kPi);
+  return irradiance;
+}
+
+TEST_F(LpvReceiversGl, ItsFloorsAtPixelsAndFromCells) {
+  FloorAndWall room;
+  room.builder.sun({0, -1, 0}, glm::vec3(std::numbers::pi_v<float>));  // the floor's radiance is 0.8
+  const Scene& scene = room.builder.scene();
+  RenderSettings s = settings(1, 16, Component::indirect);
+  s.lpv.cascades.cells = 16;
+  s.lpv.cascades.cascades = 1;
+  {
+    Renderer renderer(context(), library(), scene, gathered(s));
+    renderer.renderToTheEnd(room.camera);
+    const glm::dvec3 plate[] = {{0, 0, -1}, {2, 0, -1}, {2, 0, 1}, {0, 0, 1}};
+    room.expect(
+        ofWall(renderer.receiversFrame()->gatheredAtPixels()),
+        [&](const glm::dvec3& p) {
+          return 0.8 * kPi * twin::pointToPolygon(p, {1, 0, 0}, plate);
+        },
+        "a sunlit floor, gathered at each pixel", 0.03);
+  }
+  // Two bands of the radiance in the eight cells around, half a cell before the wall: the weight 1/4 + <n, w> / 2.
+  const Cascade grid = placeCascades(s.lpv.cascades, scene.bounds, room.camera.position, room.camera.direction)[0];
+  const auto fromCell = [&](const glm::dvec3& middle) {
+    return middle.y <= 0.0 ? 0.0 : FloorAndWall::integral(middle, [&](const glm::dvec3& d, double d2) {
+      return 0.8 * (0.25 + 0.5 * d.x / std::sqrt(d2)) * -d.y / (d2 * std::sqrt(d2));
+    });
+  };
+  std::map<std::tuple<double, double, double>, double> known;
+  const auto expected = [&](const glm::dvec3& p) {
+    const glm::dvec3 place = (p - grid.minimum()) / grid.cellSize + glm::dvec3(0.5, 0.0, 0.0) - 0.5,
+                     low = glm::floor(place + 1e-9), part = place - low;
+    double sum = 0.0;
+    for (int corner = 0; corner < 8; ++corner) {
+      const glm::dvec3 up(corner & 1, corner >> 1 & 1, corner >> 2);
+      const glm::dvec3 share = up * part + (1.0 - up) * (1.0 - part), cell = low + up;
+      const double weight = share.x * share.y * share.z;
+      if (weight < 1e-6) continue;
+      const auto [found, isNew] = known.try_emplace({cell.x, cell.y, cell.z});
+      if (isNew) found->second = fromCell(grid.minimum() + (cell + 0.5) * grid.cellSize);
+      sum += weight * found->second;
+    }
+    return sum;
+  };
+  Renderer renderer(context(), library(), scene, s);
+  renderer.renderToTheEnd(room.camera);
+  room.expect(ofWall(renderer.receiversFrame()->readFromCells(1024)), expected, "a sunlit floor, from cells", 0.08);
 }
 
 TEST_F(LpvGatherGl, AScreenBlocksWhatVoxelsSee) {

@@ -11,6 +11,7 @@ layout(std140, binding = BLOCK_RECEIVER_PATHS) uniform PathBlock { PathConstants
 #include "rays/bvh.glsl"
 #include "lpv/receivers/lookup.glsl"
 #include "lpv/receivers/work.glsl"
+#include "lpv/receivers/seen.glsl"
 layout(std430, binding = 0) restrict buffer LpvReceivers { LpvReceiver receivers[]; };
 layout(std430, binding = 1) writeonly restrict buffer LpvLit { uint lit[]; };
 layout(binding = 6) uniform usamplerBuffer lpvSeen;
@@ -23,15 +24,12 @@ void main() {
   if (index >= receiverCount()) return;
   uint triangle = receivers[index].triangle;
   if (triangle == LPV_UNPLACED) {
-    int pixel = int(receivers[index].pixel), width = tracer.picture.x;
-    vec2 place = vec2(pixel % width, pixel / width) + 0.5;
-    Ray ray = Ray(tracer.cameraPosition, 0.0,
-                  normalize(tracer.firstPixel + place.x * tracer.pixelRight + place.y * tracer.pixelUp), 3e38);
-    Hit hit = closestHit(ray, kNoHit);
-    triangle = hit.triangle == kNoHit ? LPV_NOWHERE : hit.triangle;
+    Hit hit;
+    Surface surface;
+    bool isThere = seenAt(int(receivers[index].pixel), hit, surface);
+    triangle = isThere ? hit.triangle : LPV_NOWHERE;
     receivers[index].triangle = triangle;
-    if (triangle != LPV_NOWHERE) {
-      Surface surface = surfaceAt(hit.triangle, hit.barycentrics, ray.direction);
+    if (isThere) {
       receivers[index].position = surface.position + receiving.rayOrigin;
       receivers[index].normal = surface.normal;
       receivers[index].second = hit.barycentrics.x;

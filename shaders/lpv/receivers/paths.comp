@@ -5,6 +5,7 @@
 // importance sampling [Veach1997] as in the path tracer (pathtracer/path.comp), whose triangles, materials, lights and
 // random numbers it shares. Every surface is treated as Lambertian, as forward shading treats it. Direct light of the
 // sun, spots and omnidirectional lamps is excluded: forward shading adds it per pixel.
+// FROM_CELLS, for measurements: instead of the receiver, the middle of a cell that a lookup at the receiver would read.
 // CACHED: where a path's hit lies among receivers, their irradiance of the previous frame replaces the rest of the
 // path. One bounce per frame thus adds up to all of them; elsewhere the path continues.
 layout(local_size_x = 64) in;  // LPV_LANES; GLSL 4.30 accepts only literals here
@@ -29,6 +30,31 @@ layout(std430, binding = 0) restrict buffer LpvReceivers { LpvReceiver receivers
 #include "lpv/receivers/surface.glsl"
 layout(std430, binding = 1) readonly restrict buffer LpvLit { uint lit[]; };
 shared vec3 found[LPV_LANES];
+
+#if FROM_CELLS
+#include "lpv/cascade_weight.glsl"
+const float kLookupOffset = 0.5;  // cells along the normal, as published; 0 to 1 in quarters, it has the least error
+// The middle of a cell around a position, drawn with the weight that a trilinear lookup in the cascades gives it; false
+// beyond all cascades.
+bool drawCell(vec3 position, vec3 normal, PathNumbers numbers, out vec3 middle) {
+  uvec4 words = randomWords(numbers, 0u, kPurposeChoice);
+  vec3 corner = vec3(unitFloat(words.xy), unitFloat(words.z));
+  float drawn = unitFloat(words.w), left = 1.0;
+  for (int k = 0; k < lpv.shape.y; ++k) {
+    float weight = left * lpvCascadeWeight(k, position);
+    if (drawn < weight) {
+      vec3 texel = (position - lpv.cascades[k].minimum) / lpv.cascades[k].cellSize,
+           place = texel + kLookupOffset * normal - 0.5, low = floor(place);
+      vec3 cell = low + vec3(lessThan(corner, place - low));
+      middle = lpv.cascades[k].minimum + (clamp(cell, 0.0, float(lpv.shape.x - 1)) + 0.5) * lpv.cascades[k].cellSize;
+      return true;
+    }
+    drawn -= weight;
+    left -= weight;
+  }
+  return false;
+}
+#endif
 
 bool counts(uint scatterings) { return scatterings >= tracer.minScatterings && scatterings <= tracer.maxScatterings; }
 
@@ -58,7 +84,7 @@ Shadow askLight(Surface surface, vec3 throughput, uint scatterings, bool lampsAl
   if (!isLamp) shadow.light *= powerHeuristic(light.pdf, cosine / kPi);
   vec3 start = offsetRay(surface.position, surface.geometricNormal, surface.magnitude);
   shadow.ray = Ray(start, 0.0, light.infinite ? light.direction : light.end - start, light.infinite ? 3e38 : 1.0);
-  shadow.waits = any(greaterThan(shadow.light, vec3(0.0)));
+  shadow.waits = any(notEqual(shadow.light, vec3(0.0)));
   return shadow;
 }
 #endif
@@ -101,6 +127,21 @@ vec3 followPath(Surface surface, uint triangle, PathNumbers numbers) {
         ray = Ray(offsetRay(surface.position, surface.geometricNormal, surface.magnitude), 0.0, direction, 3e38);
         ends = !(dot(direction, surface.geometricNormal) > 0.0) || scatterings >= receiving.mostSegments + 1u ||
                loopTurns >= tracer.turns;
+#if FROM_CELLS
+        if (scatterings == 1u) {
+          // Two bands of the radiance L there give the irradiance E = integral of L (1/4 + <n, w> / 2) dw
+          // [Ramamoorthi2001]; pi times this factor is what a uniformly drawn direction counts.
+          vec3 middle;
+          if (!drawCell(surface.position + receiving.rayOrigin, surface.normal, numbers, middle)) break;
+          vec2 xi = randomPair(numbers, scatterings, kPurposeScatter);
+          float z = 1.0 - 2.0 * xi.x, sine = sqrt(max(1.0 - z * z, 0.0)), turn = 2.0 * kPi * xi.y;
+          direction = vec3(sine * cos(turn), sine * sin(turn), z);
+          throughput = vec3(1.0 + 2.0 * dot(surface.normal, direction));
+          ray = Ray(middle - receiving.rayOrigin, 0.0, direction, 3e38);
+          triangle = kNoHit;
+          ends = false;
+        }
+#endif
       }
       if (ends && !shadow.waits) break;
     }
