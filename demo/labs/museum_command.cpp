@@ -29,7 +29,8 @@ int museum(const MuseumOptions& options) {
   const gl::Context context;
   gl::ProgramLibrary programs;
   Progress progress("Rooms", static_cast<int>(museumRooms().size()), options.common.quiet);
-  writeFileAtomically(options.html, museumHtml(context, programs, options.small, [&](int done, int) { progress.update(done); }));
+  writeFileAtomically(options.html,
+                      museumHtml(context, programs, options.small, [&](int done, int) { progress.update(done); }));
   fmt::print("{}: {} rooms\n", options.html, museumRooms().size());
   return 0;
 }

@@ -324,7 +324,8 @@ TEST(LabTemplate, HasAHundredLines) {
 // a user does, with more samples and patches.
 TEST(LabMuseum, EveryDeviationHasARoomAndATest) {
   TempFolder folder;
-  const RunResult made = RUN_LUCERNA(fmt::format("lab museum {} -o {}", longTests() ? "" : "--small", (folder / "museum.html").string()));
+  const RunResult made =
+      RUN_LUCERNA(fmt::format("lab museum {} -o {}", longTests() ? "" : "--small", (folder / "museum.html").string()));
   ASSERT_EQ(made.exitCode, 0) << made.err;
   const std::string html = readFileText(folder / "museum.html");
   for (const Deviation& deviation : allDeviations())
