@@ -119,11 +119,11 @@ std::string growthOf(const std::vector<VptPicture>& pictures, const std::vector<
   return text;
 }
 
-/// A picture's measurement as stored: everything but its pixels, with the loading time.
-PartFolder::Json keptOf(const VptResult& result, double loadMs) {
+/// A picture's measurement as stored: everything but its pixels, with the time of preparation.
+PartFolder::Json keptOf(const VptResult& result, double preparationMs) {
   const PathTracer::Statistics& s = result.statistics;
   return {{"ms", result.ms},
-          {"preparation_ms", loadMs + result.preparationMs},
+          {"preparation_ms", preparationMs},
           {"samples", s.samples},
           {"turns", s.turns},
           {"collisions", s.collisions},
@@ -198,10 +198,11 @@ Tables measureVptTables(const VptTablesInput& input) {
           const Scene scene = loadVptScene(picture, fidelity);
           const double loadMs =
               std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+          const PathDeviations deviations = vptDeviations(picture, fidelity);
+          const VptResult drawn = renderVpt(input.context, input.programs, picture, scene, size,
+                                            vptSamples(picture, input.scale), mostSeconds, deviations);
           const PartFolder::Json made =
-              keptOf(renderVpt(input.context, input.programs, picture, scene, size, vptSamples(picture, input.scale),
-                               mostSeconds, vptDeviations(picture, fidelity)),
-                     loadMs);
+              keptOf(drawn, loadMs + vptPreparationMs(input.context, input.programs, scene, size, deviations));
           if (!interrupted()) part.store(own, made);  // otherwise it ended early
           results.push_back(resultOf(made));
         }

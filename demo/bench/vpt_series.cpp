@@ -130,14 +130,7 @@ VptResult renderVpt(const gl::Context& context, gl::ProgramLibrary& programs, co
   settings.deviations = deviations;
   settings.seed = seed;
   settings.size = size;
-  const auto makeSeconds = [&] {
-    const auto begin = Clock::now();
-    const PathTracer second(context, programs, scene, settings);
-    gl::finish();
-    return secondsSince(begin);
-  };
   PathTracer tracer(context, programs, scene, settings);
-  const double preparation = makeSeconds();  // the programs are compiled by now
   const Camera camera = scene.cameras.size() > 1 ? chooseCamera(scene, picture.camera) : scene.cameras.front();
   tracer.setCamera(camera);
   tracer.advance(1);  // a driver may compile at the first dispatch
@@ -147,10 +140,20 @@ VptResult renderVpt(const gl::Context& context, gl::ProgramLibrary& programs, co
   while (tracer.advance(samples) && !interrupted() && (mostSeconds <= 0.0 || seconds() < mostSeconds)) {}
   VptResult result;
   result.ms = 1000.0 * seconds();
-  result.preparationMs = 1000.0 * preparation;
   result.statistics = tracer.statistics();
   result.image = tracer.mean();
   return result;
+}
+
+double vptPreparationMs(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, glm::ivec2 size,
+                        const PathDeviations& deviations) {
+  PathTracer::Settings settings;
+  settings.deviations = deviations;
+  settings.size = size;
+  const auto begin = Clock::now();
+  const PathTracer tracer(context, programs, scene, settings);
+  gl::finish();
+  return 1000.0 * secondsSince(begin);
 }
 
 }  // namespace lucerna::demo::bench

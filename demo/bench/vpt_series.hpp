@@ -56,11 +56,14 @@ struct VptResult {
   Image image;
   PathTracer::Statistics statistics;
   double ms = 0.0;  ///< of the work done, without compiling and uploading
-  double preparationMs =
-      0.0;  ///< on the CPU for a loaded scene: building the hierarchy, packing, upload; without compiling
+  double preparationMs = 0.0;  ///< loading, and vptPreparationMs()
 };
 VptResult renderVpt(const gl::Context& context, gl::ProgramLibrary& programs, const VptPicture& picture,
                     const Scene& scene, glm::ivec2 size, std::uint32_t samples, double mostSeconds,
                     const PathDeviations& deviations = {}, std::uint32_t seed = 0);
+
+/// Of a loaded scene whose programs are compiled: building the hierarchy, packing, upload.
+double vptPreparationMs(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, glm::ivec2 size,
+                        const PathDeviations& deviations);
 
 }  // namespace lucerna::demo::bench

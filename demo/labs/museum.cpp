@@ -54,8 +54,7 @@ struct Traced {
   double error = 0.0;  ///< standard error of its mean
 };
 Traced traced(const gl::Context& context, gl::ProgramLibrary& programs, const std::string& name,
-              const std::string& deviation, bool lamps = true) {
-  constexpr std::uint32_t kSamples = 32;
+              const std::string& deviation, bool lamps = true, std::uint32_t samples = 32) {
   const Scene scene = loadScene(labsFolder() / "museum" / (name + ".json"));
   RenderSettings shared;
   if (!deviation.empty()) applyDeviation(shared, deviation + "=on");
@@ -65,7 +64,7 @@ Traced traced(const gl::Context& context, gl::ProgramLibrary& programs, const st
   settings.nextEvent = lamps;  // a point lamp cannot be found otherwise
   PathTracer tracer(context, programs, scene, settings);
   tracer.setCamera(scene.cameras.front());
-  tracer.record(kSamples);
+  tracer.record(samples);
   const glm::dvec3 error = tracer.statistics().meanError;
   return {tracer.mean(), (error.x + error.y + error.z) / 3.0};
 }
@@ -101,7 +100,7 @@ nav { columns: 3; font-size: 13px; margin-bottom: 1.5em; } nav a { display: bloc
 
 }  // namespace
 
-std::string museumHtml(const gl::Context& context, gl::ProgramLibrary& programs,
+std::string museumHtml(const gl::Context& context, gl::ProgramLibrary& programs, bool small,
                        const std::function<void(int, int)>& progress) {
   std::string index = "<nav>", body;
   int done = 0;
@@ -111,8 +110,10 @@ std::string museumHtml(const gl::Context& context, gl::ProgramLibrary& programs,
     const std::string technique = techniqueOf(room.deviation),
                       scene = technique == "path" ? sceneOf(room.deviation) : technique;
     const auto shown = [&](const std::string& deviation) {
-      return technique == "path" ? traced(context, programs, scene, deviation)
-                                 : Traced{rendered(context, programs, settingsOf(technique, deviation))};
+      if (technique == "path") return traced(context, programs, scene, deviation, true, small ? 8 : 32);
+      RenderSettings settings = settingsOf(technique, deviation);
+      if (small) settings.radiosity.solution.patches.longestEdge = 0.1;  // of a box of half a metre
+      return Traced{rendered(context, programs, settings)};
     };
     if (!sound.contains(scene)) sound[scene] = shown("");
     // Both pictures and their difference.

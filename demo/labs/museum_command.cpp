@@ -20,6 +20,7 @@ namespace fs = std::filesystem;
 struct MuseumOptions {
   CommonOptions common;
   std::string seed, answer, folder = ".", html = "museum.html";
+  bool small = false;
 };
 
 int museum(const MuseumOptions& options) {
@@ -28,7 +29,8 @@ int museum(const MuseumOptions& options) {
   const gl::Context context;
   gl::ProgramLibrary programs;
   Progress progress("Rooms", static_cast<int>(museumRooms().size()), options.common.quiet);
-  writeFileAtomically(options.html, museumHtml(context, programs, [&](int done, int) { progress.update(done); }));
+  writeFileAtomically(options.html,
+                      museumHtml(context, programs, options.small, [&](int done, int) { progress.update(done); }));
   fmt::print("{}: {} rooms\n", options.html, museumRooms().size());
   return 0;
 }
@@ -97,6 +99,7 @@ Work addLab(Command app) {
       [options] { return museum(*options); });
   options->common.declare(museumApp);
   museumApp.addOption("-o,--output", options->html, "FILE.html").showDefault();
+  museumApp.addFlag("--small", options->small, "fewer samples and patches: seconds instead of half a minute");
   return commands.work();
 }
 

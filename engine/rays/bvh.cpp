@@ -10,6 +10,7 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
+#include <cstdint>
 #include <future>
 #include <limits>
 #include <optional>
@@ -23,6 +24,13 @@ using shared::BvhNode;
 using shared::BvhTriangle;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+/// std::nextafter towards infinity, inline: a tenth of building went into its calls.
+float nextAbove(float v) {
+  if (v == 0.0f) return std::numeric_limits<float>::denorm_min();
+  if (v == kInfinity) return v;
+  return std::bit_cast<float>(std::bit_cast<std::int32_t>(v) + (v > 0.0f ? 1 : -1));
+}
 constexpr int kBins = 16;
 constexpr std::size_t kParallelFrom = 4096;  // fewer references are not worth another thread
 
@@ -224,8 +232,8 @@ class BinaryBuilder {
     }
     Box box;
     for (int k = 0; k < 3; ++k) {
-      box.min[k] = std::nextafter(static_cast<float>(min[k]), -kInfinity);
-      box.max[k] = std::nextafter(static_cast<float>(max[k]), kInfinity);
+      box.min[k] = -nextAbove(static_cast<float>(-min[k]));
+      box.max[k] = nextAbove(static_cast<float>(max[k]));
     }
     Box slab = r.box;
     slab.min[axis] = std::max(slab.min[axis], low), slab.max[axis] = std::min(slab.max[axis], high);

@@ -88,20 +88,20 @@ f 9 10 11 12
 TEST_F(Interrupt, ASolutionIsNotWrittenBeforeItIsOne) {
   // Products one by one from the rows' file: most of the time goes into the solver.
   expectGoesOn("'" LUCERNA_BINARY "' radiosity solve '" + path("room.obj") + "' '" + path("o.sol") +
-                   "' 16 --edge 0.18 --memory 0.01 --visibility rays --solver jacobi --error 1e-6 --quiet",
+                   "' 16 --edge 0.25 --memory 0.01 --visibility rays --solver jacobi --error 1e-6 --quiet",
                path("o.sol"), "INT", 130);
 }
 
 TEST_F(Interrupt, ARefinedSolutionTakesUpItsOwnRows) {
   expectGoesOn(
       "'" LUCERNA_BINARY "' radiosity solve '" + path("room.obj") + "' '" + path("o.sol") +
-          "' 16 --edge 0.3 --memory 0.01 --refinements 1 --visibility rays --solver jacobi --error 1e-5 --quiet",
+          "' 16 --edge 0.36 --memory 0.01 --refinements 1 --visibility rays --solver jacobi --error 1e-5 --quiet",
       path("o.sol"), "TERM", 143);
 }
 
 TEST_F(Interrupt, APathTracedPictureGoesOnFromItsFilm) {
   expectGoesOn("'" LUCERNA_BINARY "' render '" + path("room.obj") +
-                   "' --technique path --camera 0,1,0.9,0,1,0,70 --size 64x64 --spp 192 --quiet -o '" + path("o.pfm") +
+                   "' --technique path --camera 0,1,0.9,0,1,0,70 --size 64x64 --spp 96 --quiet -o '" + path("o.pfm") +
                    "'",
                path("o.pfm"), "INT", 130);
 }

@@ -130,12 +130,13 @@ TEST_F(PathTracerTest, AStoppedPictureIsOneOfWholePasses) {
   Scene scene = room.scene();
   scene.sun.reset();
   const Camera camera = lookingAt({0, 0, 0.9}, {0, 0, 0});
-  PathTracer::Settings settings = sized(150);  // four tiles
+  constexpr int kSide = 132;  // four tiles
+  PathTracer::Settings settings = sized(kSide);
   settings.submissionSeconds = 1e-9;  // a segment a submission: a pass takes many
   std::map<std::uint32_t, Image> whole;
   const auto afterPasses = [&](std::uint32_t samples) -> const Image& {
     Image& image = whole[samples];
-    if (image.pixels.empty()) image = tracer(scene, camera, sized(150), samples).mean();
+    if (image.pixels.empty()) image = tracer(scene, camera, sized(kSide), samples).mean();
     return image;
   };
   int cut = 0;
@@ -156,10 +157,11 @@ TEST_F(PathTracerTest, AStoppedPictureIsOneOfWholePasses) {
       int samples = -1;  // that all pixels of the tile have
       for (int n = 0; n <= 3 && samples < 0; ++n) {
         bool same = true;
-        for (int y = tile.y; y < std::min(tile.y + 128, 150); ++y)
-          for (int x = tile.x; x < std::min(tile.x + 128, 150); ++x)
-            same = same && mean.at(x, 149 - y) ==
-                               (n == 0 ? glm::vec3(0.0f) : afterPasses(static_cast<std::uint32_t>(n)).at(x, 149 - y));
+        for (int y = tile.y; y < std::min(tile.y + 128, kSide); ++y)
+          for (int x = tile.x; x < std::min(tile.x + 128, kSide); ++x)
+            same = same &&
+                   mean.at(x, kSide - 1 - y) ==
+                       (n == 0 ? glm::vec3(0.0f) : afterPasses(static_cast<std::uint32_t>(n)).at(x, kSide - 1 - y));
         if (same) samples = n;
       }
       EXPECT_GE(samples, 0) << submissions << ": tile " << tile.x << ", " << tile.y << " of "
