@@ -71,7 +71,7 @@ struct DensityMarch {
 
 // False if the ray misses the box.
 bool densityMarchStart(DensityRecord g, vec3 origin, vec3 direction, float tMax, out DensityMarch march) {
-  march.origin = (origin - g.min) * g.cellsPerUnit;
+  march = DensityMarch((origin - g.min) * g.cellsPerUnit, vec3(0.0), 0.0, 0.0, 0.0, ivec3(0));
   march.direction = direction * g.cellsPerUnit;
   vec3 size = vec3(g.size.xyz);
   float near = 0.0, far = tMax;

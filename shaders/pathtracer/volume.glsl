@@ -39,8 +39,26 @@ struct Besides {
   float tMin;
   uint skip;
   uint crossed;
+  float gap;  // of the surface
 };
+Besides besides;
 const uint kMostBesides = 8u;
+#if PARKED
+void takeBesides() {
+  uvec4 w = state[wordAt(kBesidesWord + 2u)];
+  besides = Besides(state[wordAt(kBesidesWord)], state[wordAt(kBesidesWord + 1u)], uintBitsToFloat(w.x), w.y, w.z,
+                    uintBitsToFloat(w.w));
+}
+void parkBesides() {
+  state[wordAt(kBesidesWord)] = besides.beyond;
+  state[wordAt(kBesidesWord + 1u)] = besides.before;
+  state[wordAt(kBesidesWord + 2u)] =
+      uvec4(floatBitsToUint(besides.tMin), besides.skip, besides.crossed, floatBitsToUint(besides.gap));
+}
+#else
+void takeBesides() {}
+void parkBesides() {}
+#endif
 
 // ahead: one gap long, through to the far side of the surface.
 Ray besidesRay(Besides b, vec3 position, vec3 ahead) { return Ray(position - ahead, b.tMin, 2.0 * ahead, 1.0); }
@@ -69,6 +87,7 @@ bool crossBesides(inout Besides b, inout Hit hit, vec3 ahead) {
 const uint kMostTries = 256u;  // tentative collisions of a straight line through a grid
 
 vec3 mediumTransmittance(MediumRecord medium, vec3 origin, vec3 direction, float distance, inout uvec4 words) {
+  vec3 through = vec3(1.0);
 #if HETEROGENEOUS
   if (medium.grid >= 0) {
     // Ratio tracking [Novak2014]: each tentative collision multiplies by the probability of a null collision. Roulette
@@ -77,19 +96,18 @@ vec3 mediumTransmittance(MediumRecord medium, vec3 origin, vec3 direction, float
     // times the transmittance of the rest has the transmittance of the whole way as its mean.
     DensityRecord g = densityRecords[medium.grid];
     DensityMarch march;
-    vec3 through = vec3(1.0);
-    float bound;
+    float bound = 0.0, t = 0.0;
     uint tries = 0u;
-    if (!densityMarchStart(g, origin, direction, distance, march)) return through;
-    while (densityMarchNext(g, march, bound)) {
+    bool goesOn = densityMarchStart(g, origin, direction, distance, march);
+    while (goesOn && densityMarchNext(g, march, bound)) {
       ++loopTurns;
       float rate = medium.majorant * bound;
       if (!(rate > 0.0)) continue;
-      float t = march.near;
+      t = march.near;
       for (;;) {
         ++loopTurns;
-        if (++tries > kMostTries)
-          return through * exp(-medium.extinction * densityIntegral(g, march.origin, march.direction, t, march.last));
+        goesOn = ++tries <= kMostTries;
+        if (!goesOn) break;
         words = pcg4d(words);
         t += exponentialSample(words.x) / rate;
         if (t >= march.far) break;
@@ -97,15 +115,21 @@ vec3 mediumTransmittance(MediumRecord medium, vec3 origin, vec3 direction, float
         through *= max(1.0 - medium.extinction * (d / rate), vec3(0.0));
         float largest = max(through.r, max(through.g, through.b));
         if (largest < 0.1) {
-          if (unitFloat(words.y) >= 10.0 * largest) return vec3(0.0);
+          goesOn = unitFloat(words.y) < 10.0 * largest;
+          if (!goesOn) break;
           through /= 10.0 * largest;
         }
       }
     }
-    return through;
-  }
+    if (tries > kMostTries)
+      through *= exp(-medium.extinction * densityIntegral(g, march.origin, march.direction, t, march.last));
+    else if (!goesOn && tries > 0u) through = vec3(0.0);
+  } else
 #endif
-  return exp(-medium.extinction * min(distance, kFar));
+  {
+    through = exp(-medium.extinction * min(distance, kFar));
+  }
+  return through;
 }
 #endif
 
@@ -117,7 +141,7 @@ bool crossShadow(Hit hit) {
   if (hit.triangle != kNoHit) {
     rank = rankOf(hit.triangle);
     front = facesAgainst(hit.triangle, shadow.direction);
-    if (rank < 0 || ++shadow.crossed >= 256u) {
+    if (rank < 0 || shadow.crossed >= 255u) {
       shadow.light = vec3(0.0);
       return false;
     }
@@ -127,12 +151,20 @@ bool crossShadow(Hit hit) {
   if (medium >= 0) {
     float unit = shadow.infinite ? 1.0 : length(shadow.direction),
           far = hit.triangle == kNoHit ? (shadow.infinite ? kFar : 1.0) : hit.t;
-    shadow.light *= mediumTransmittance(media[medium], shadow.origin + shadow.from * shadow.direction,
-                                        shadow.direction / unit, (far - shadow.from) * unit, shadow.words);
+    uvec4 words = shadow.words;
+    vec3 through = mediumTransmittance(media[medium], shadow.origin + shadow.from * shadow.direction,
+                                       shadow.direction / unit, (far - shadow.from) * unit, words);
+#if HETEROGENEOUS
+    forgetAddresses();
+    takeShadow();
+#endif
+    shadow.words = words;
+    shadow.light *= through;
   }
 #endif
   if (hit.triangle == kNoHit || all(equal(shadow.light, vec3(0.0)))) return false;
   crossBoundary(shadow.inside, rank, front);
+  ++shadow.crossed;
   shadow.tMin = shadow.from = hit.t;
   shadow.skip = hit.triangle;
   return true;
@@ -209,7 +241,7 @@ bool isPointLike(uvec4 words) {
 void addPointLight(inout Path path, MediumRecord medium, vec3 q, float s, PathNumbers numbers) {
   uvec4 words = randomWords(numbers, path.event, kPurposePick);
   if (!counts(path.scatterings + 1u) || all(equal(medium.albedo, vec3(0.0))) || !isPointLike(words)) return;
-  LightSample light;
+  LightSample light = LightSample(vec3(0.0), 0.0, vec3(0.0), vec3(0.0), false);
   vec2 xi = randomPair(numbers, path.event, kPurposeLight);
   if (!sampleLight(path.origin, xi, words, light)) {
     // A spot may not light the origin; its position is needed all the same.
@@ -285,7 +317,7 @@ int scatterInMedium(inout Path path, MediumRecord medium, PathNumbers numbers, b
   if (path.scatterings >= tracer.maxScatterings || all(equal(path.throughput, vec3(0.0)))) return kEnded;
   ++path.scatterings;
 #if NEXT_EVENT
-  LightSample light;
+  LightSample light = LightSample(vec3(0.0), 0.0, vec3(0.0), vec3(0.0), false);
 #if DISTANCE_WITHOUT_PDF || BOOSTED_INTERACTION
   const bool asked = false;
 #else
@@ -328,15 +360,15 @@ int trackDensity(inout Path path, MediumRecord medium, float distance, PathNumbe
   collided = false;
   DensityRecord g = densityRecords[medium.grid];
   DensityMarch march;
-  if (!densityMarchStart(g, path.origin, path.direction, distance, march)) return kFlightArrives;
   uvec4 words = randomWords(numbers, path.event, kPurposeFlight);
-  float bound;
+  float bound = 0.0, t = 0.0;
   uint tries = 0u;
-  while (densityMarchNext(g, march, bound)) {
+  bool goesOn = densityMarchStart(g, path.origin, path.direction, distance, march);
+  while (goesOn && densityMarchNext(g, march, bound)) {
     ++loopTurns;
     float rate = medium.majorant * bound;
     if (!(rate > 0.0)) continue;
-    float t = march.near;
+    t = march.near;
     for (;;) {
       ++loopTurns;
       words = pcg4d(words);
@@ -355,25 +387,27 @@ int trackDensity(inout Path path, MediumRecord medium, float distance, PathNumbe
 #endif
       }
 #endif
-      bool collides = unitFloat(words.y) < real;
+      collided = unitFloat(words.y) < real;
       if (medium.greyExtinction != 0)
-        path.throughput *= collides ? medium.albedo : vec3(1.0);
+        path.throughput *= collided ? medium.albedo : vec3(1.0);
       else
-        path.throughput *= collides ? medium.albedo * share / real : (1.0 - share) / (1.0 - real);
-      if (collides || ++tries == 64u) {
-        path.origin += t * path.direction;
-        if (collides) {
-          collided = true;
-          return kScattered;
-        }
-        path.travelled += t;
-        path.head = 0.0;
-        ++path.event;
-        return kScattered;
-      }
+        path.throughput *= collided ? medium.albedo * share / real : (1.0 - share) / (1.0 - real);
+      goesOn = !collided && ++tries < 64u;
+      if (!goesOn) break;
     }
   }
-  return kFlightArrives;
+  vec3 throughput = path.throughput;
+  forgetAddresses();
+  take(path);
+  path.throughput = throughput;
+  bool arrives = !collided && tries < 64u;
+  if (!arrives) path.origin += t * path.direction;
+  if (!arrives && !collided) {
+    path.travelled += t;
+    path.head = 0.0;
+    ++path.event;
+  }
+  return arrives ? kFlightArrives : kScattered;
 }
 #endif
 
@@ -457,6 +491,8 @@ bool walk(inout Path path, MediumRecord medium, inout float flight, PathNumbers 
     if (!(flight + margin < radius - length(path.origin - interior.min - (vec3(cell) + 0.5) * interior.cell)))
       return true;
     ++loopTurns;
+    numbers.pixel += hiddenZero();
+    numbers.sampleIndex += hiddenZero();
     weighFlight(path, medium, channelProbabilities(path.throughput), path.head + flight, false, numbers);
     path.origin += flight * path.direction;
     if (scatterInMedium(path, medium, numbers, false) != kScattered) return false;

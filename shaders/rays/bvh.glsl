@@ -8,6 +8,7 @@
 // llvmpipe gathers from them three times as fast as from storage blocks.
 #include "shared/bindings.h"
 #include "shared/bvh.h"
+#define FINISH_LOOP (SHARED_STACK > 0)
 #include "lib/float_pairs.glsl"
 
 layout(binding = UNIT_BVH_NODES) uniform usamplerBuffer bvhNodes;      // BVH_NODE_TEXELS per BvhNode
@@ -218,10 +219,40 @@ Hit finishRay(BvhTraversal s, vec3 direction) {
   float scale = inversePowerOfTwo(max(largestOf(b - a), largestOf(c - a))),
         directionScale = inversePowerOfTwo(largestOf(direction));
   a *= scale, b *= scale, c *= scale;
-  Pairs e1 = pairsDifference(b, a), e2 = pairsDifference(c, a), corner = pairsDifference(a, s.ray.origin * scale),
-        d = Pairs(direction * directionScale, vec3(0.0));
-  Pairs n = pairsCross(e1, e2), m = pairsCross(d, corner);
-  vec2 along = pairsDot(n, d), distance = pairsDot(n, corner), v = pairsDot(e2, m), w = pairsDot(e1, m);
+  Pairs e1 = pairsDifference(b, a), e2 = pairsDifference(c, a), corner = pairsDifference(a, s.ray.origin * scale);
+  vec3 d = direction * directionScale;
+#if FINISH_LOOP
+  // Component after component: a third fewer registers than all at once.
+  vec4 sum = vec4(0.0), error = vec4(0.0), low = vec4(0.0);
+  for (int axis = met ? 0 : 3; axis < 3; ++axis) {
+    PairOfPairs p = pairsProduct(PairOfPairs(vec2(e1.hi.y, d.y), vec2(e1.lo.y, 0.0)),
+                                 PairOfPairs(vec2(e2.hi.z, corner.hi.z), vec2(e2.lo.z, corner.lo.z))),
+                q = pairsProduct(PairOfPairs(vec2(e1.hi.z, d.z), vec2(e1.lo.z, 0.0)),
+                                 PairOfPairs(vec2(e2.hi.y, corner.hi.y), vec2(e2.lo.y, corner.lo.y))),
+                nm = pairsDifference(p, q);
+    p = pairsProduct(PairOfPairs(nm.hi.xx, nm.lo.xx), PairOfPairs(vec2(d.x, corner.hi.x), vec2(0.0, corner.lo.x)));
+    q = pairsProduct(PairOfPairs(nm.hi.yy, nm.lo.yy), PairOfPairs(vec2(e2.hi.x, e1.hi.x), vec2(e2.lo.x, e1.lo.x)));
+    vec4 term = vec4(p.hi, q.hi);
+    precise vec4 next = sum + term;
+    precise vec4 back = next - sum;
+    precise vec4 lost = error + ((sum - (next - back)) + (term - back));
+    sum = next;
+    error = lost;
+    low += vec4(p.lo, q.lo);
+    e1 = Pairs(e1.hi.yzx, e1.lo.yzx);
+    e2 = Pairs(e2.hi.yzx, e2.lo.yzx);
+    corner = Pairs(corner.hi.yzx, corner.lo.yzx);
+    d = d.yzx;
+  }
+  precise vec4 rest = error + low;
+  precise vec4 hi = sum + rest;
+  precise vec4 lo = rest - (hi - sum);
+  vec2 along = vec2(hi.x, lo.x), distance = vec2(hi.y, lo.y), v = vec2(hi.z, lo.z), w = vec2(hi.w, lo.w);
+#else
+  Pairs n = pairsCross(e1, e2), m = pairsCross(Pairs(d, vec3(0.0)), corner);
+  vec2 along = pairsDot(n, Pairs(d, vec3(0.0))), distance = pairsDot(n, corner), v = pairsDot(e2, m),
+       w = pairsDot(e1, m);
+#endif
   Hit hit = s.hit;
   if (along.x != 0.0) {
     vec3 ratios = pairsOver(Pairs(vec3(distance.x, -v.x, w.x), vec3(distance.y, -v.y, w.y)), along);

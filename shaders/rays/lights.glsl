@@ -22,9 +22,7 @@ bool sampleLight(vec3 position, vec2 xi, uvec4 words, out LightSample light) {
   if (unitFloat(words.y) >= lights[i].threshold) i = lights[i].alias;
   PathLight source = lights[i];
   pickedLight = i;
-  light.infinite = false;
-  light.pdf = 0.0;
-  light.end = source.a;
+  light = LightSample(vec3(0.0), 0.0, vec3(0.0), source.a, false);
   vec3 away = source.a - position;
   float distance2 = dot(away, away);
 #if EMISSION
