@@ -258,6 +258,29 @@ vec3 twoSum(vec3 a, vec3 b, out vec3 rest) {
   return sum;
 }
 
+// A pixel's film. A GPU reads it at the end of every sample, a software renderer once.
+struct Film {
+  vec3 mean, rest, spread;
+};
+
+Film readFilm(ivec2 pixel) {
+  return Film(uintBitsToFloat(imageLoad(filmMean, pixel).xyz), uintBitsToFloat(imageLoad(filmRest, pixel).xyz),
+              uintBitsToFloat(imageLoad(filmSpread, pixel).xyz));
+}
+
+void writeFilm(ivec2 pixel, Film film, uint samples) {
+  imageStore(filmMean, pixel, uvec4(floatBitsToUint(film.mean), samples));
+  imageStore(filmSpread, pixel, uvec4(floatBitsToUint(film.spread), 0u));
+  imageStore(filmRest, pixel, uvec4(floatBitsToUint(film.rest), 0u));
+}
+
+// Welford's mean and sum of squares [Welford1962], with the mean's low part.
+void addSample(inout Film film, vec3 radiance, uint samples) {
+  vec3 difference = (radiance - film.mean) - film.rest;
+  film.mean = twoSum(film.mean, film.rest + difference / float(samples), film.rest);
+  film.spread += difference * ((radiance - film.mean) - film.rest);
+}
+
 ivec2 pixelAt(uint where) { return ivec2(where & 0xffffu, where >> 16u); }
 uint indexOf(ivec2 pixel) { return uint(pixel.y * tracer.picture.x + pixel.x); }
 
@@ -285,6 +308,11 @@ void main() {
   if (samples >= tracer.sampleTarget) return;
 
   // picture.w: index of the film's first sample.
+#if PARKED
+  Film film;
+#else
+  Film film = readFilm(pixel);
+#endif
   uint where = uint(pixel.x) | uint(pixel.y) << 16u;
   PathNumbers numbers =
       PathNumbers(indexOf(pixel), uint(tracer.picture.w) + samples, tracer.seed);
@@ -545,20 +573,18 @@ void main() {
       }
 #endif
     }
-    // A sample is complete: update Welford's mean and sum of squares [Welford1962], with the mean's low part.
+    // A sample is complete.
     if (stage == kEnds) {
-      vec3 radiance = radianceOf(path);
       uint samples = ++numbers.sampleIndex - uint(tracer.picture.w);
+#if PARKED
       where += hiddenZero();
-      ivec2 pixel = pixelAt(where);
-      vec3 mean = uintBitsToFloat(imageLoad(filmMean, pixel).xyz), rest = uintBitsToFloat(imageLoad(filmRest, pixel).xyz);
-      vec3 spread = uintBitsToFloat(imageLoad(filmSpread, pixel).xyz);
-      vec3 difference = (radiance - mean) - rest;
-      mean = twoSum(mean, rest + difference / float(samples), rest);
-      spread += difference * ((radiance - mean) - rest);
-      imageStore(filmMean, pixel, uvec4(floatBitsToUint(mean), samples));
-      imageStore(filmSpread, pixel, uvec4(floatBitsToUint(spread), 0u));
-      imageStore(filmRest, pixel, uvec4(floatBitsToUint(rest), 0u));
+      pixel = pixelAt(where);
+      film = readFilm(pixel);
+#endif
+      addSample(film, radianceOf(path), samples);
+#if PARKED
+      writeFilm(pixel, film, samples);
+#endif
       if (samples >= tracer.sampleTarget) {
         inFlight = false;
         break;
@@ -569,11 +595,14 @@ void main() {
     }
   }
 
-  // Store the counters and the path in flight.
+  // Store the counters, the film, and the path in flight.
   atomicMax(longest, loopTurns);
   atomicAdd(allTurns, loopTurns);
 #if MEDIA
   atomicAdd(collisions, collisionCount);
+#endif
+#if !PARKED
+  writeFilm(pixel, film, numbers.sampleIndex - uint(tracer.picture.w));
 #endif
   if (inFlight) {
     atomicAdd(unfinished, 1u);
