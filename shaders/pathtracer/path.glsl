@@ -93,7 +93,7 @@ Path startPath(ivec2 pixel, PathNumbers numbers) {
 
 // A lane's words in `state`. The path's are origin, skip; direction, pdf; throughput, travelled; radiance, scatterings
 // and chain; event, ior, head, face; and with INTERIORS inside. The others are for PARKED alone.
-uint home;
+uint home = 0u;
 const uint kShadowWord = INTERIORS != 0 ? 6u : 5u;
 const uint kHitWord = 12u;      // the path's, and the boundary that a shadow ray is crossing
 const uint kBesidesWord = 14u;
