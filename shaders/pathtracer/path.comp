@@ -521,7 +521,7 @@ void main() {
     if (stage == kFlown) {
       take(path);
       takeHit(0u, arrival);
-      int became = crossMedium(path, media[mediumInside(path.inside)], flight, arrival, numbers);
+      int became = crossMedium(path, mediumInside(path.inside), flight, arrival, numbers);
       park(path);
       stage = became == kFlightArrives ? kArrives : became == kScattered ? kGoesOn : kEnds;
       if (stage != kArrives && shadow.waits) {

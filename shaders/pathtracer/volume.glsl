@@ -83,6 +83,14 @@ bool crossBesides(inout Besides b, inout Hit hit, vec3 ahead) {
 }
 #endif
 
+// Read wherever they are used, rather than kept in registers.
+#if MEDIA
+MediumRecord mediumAt(int index) { return media[index + int(hiddenZero())]; }
+#endif
+#if HETEROGENEOUS
+DensityRecord gridOf(MediumRecord medium) { return densityRecords[medium.grid + int(hiddenZero())]; }
+#endif
+
 #if MEDIA
 const uint kMostTries = 256u;  // tentative collisions of a straight line through a grid
 
@@ -94,12 +102,11 @@ vec3 mediumTransmittance(MediumRecord medium, vec3 origin, vec3 direction, float
     // starts below a tenth. A bound far above the density causes endless null collisions, so after a maximum number the
     // rest of the way is integrated cell by cell. That keeps the mean unbiased: at every collision, the estimate so far
     // times the transmittance of the rest has the transmittance of the whole way as its mean.
-    DensityRecord g = densityRecords[medium.grid];
     DensityMarch march;
     float bound = 0.0, t = 0.0;
     uint tries = 0u;
-    bool goesOn = densityMarchStart(g, origin, direction, distance, march);
-    while (goesOn && densityMarchNext(g, march, bound)) {
+    bool goesOn = densityMarchStart(gridOf(medium), origin, direction, distance, march);
+    while (goesOn && densityMarchNext(gridOf(medium), march, bound)) {
       ++loopTurns;
       float rate = medium.majorant * bound;
       if (!(rate > 0.0)) continue;
@@ -111,7 +118,7 @@ vec3 mediumTransmittance(MediumRecord medium, vec3 origin, vec3 direction, float
         words = pcg4d(words);
         t += exponentialSample(words.x) / rate;
         if (t >= march.far) break;
-        float d = densityAt(g, march.origin + t * march.direction);
+        float d = densityAt(gridOf(medium), march.origin + t * march.direction);
         through *= max(1.0 - medium.extinction * (d / rate), vec3(0.0));
         float largest = max(through.r, max(through.g, through.b));
         if (largest < 0.1) {
@@ -122,7 +129,7 @@ vec3 mediumTransmittance(MediumRecord medium, vec3 origin, vec3 direction, float
       }
     }
     if (tries > kMostTries)
-      through *= exp(-medium.extinction * densityIntegral(g, march.origin, march.direction, t, march.last));
+      through *= exp(-medium.extinction * densityIntegral(gridOf(medium), march.origin, march.direction, t, march.last));
     else if (!goesOn && tries > 0u) through = vec3(0.0);
   } else
 #endif
@@ -358,13 +365,12 @@ int scatterInMedium(inout Path path, MediumRecord medium, PathNumbers numbers, b
 // continues with the next ray: exponential flights have no memory, and no submission is held up.
 int trackDensity(inout Path path, MediumRecord medium, float distance, PathNumbers numbers, out bool collided) {
   collided = false;
-  DensityRecord g = densityRecords[medium.grid];
   DensityMarch march;
   uvec4 words = randomWords(numbers, path.event, kPurposeFlight);
   float bound = 0.0, t = 0.0;
   uint tries = 0u;
-  bool goesOn = densityMarchStart(g, path.origin, path.direction, distance, march);
-  while (goesOn && densityMarchNext(g, march, bound)) {
+  bool goesOn = densityMarchStart(gridOf(medium), path.origin, path.direction, distance, march);
+  while (goesOn && densityMarchNext(gridOf(medium), march, bound)) {
     ++loopTurns;
     float rate = medium.majorant * bound;
     if (!(rate > 0.0)) continue;
@@ -374,12 +380,12 @@ int trackDensity(inout Path path, MediumRecord medium, float distance, PathNumbe
       words = pcg4d(words);
       t += exponentialSample(words.x) / rate;
       if (t >= march.far) break;
-      vec3 share = min(medium.extinction * (densityAt(g, march.origin + t * march.direction) / rate), vec3(1.0));
+      vec3 share = min(medium.extinction * (densityAt(gridOf(medium), march.origin + t * march.direction) / rate), vec3(1.0));
       vec3 q = channelProbabilities(path.throughput);
       float real = dot(q, share);
 #if VOLUME_EMISSION
       if (counts(path.scatterings)) {
-        vec3 emitted = medium.emission * (densityAt(g, march.origin + t * march.direction) / rate);
+        vec3 emitted = medium.emission * (densityAt(gridOf(medium), march.origin + t * march.direction) / rate);
         addLight(path, emitted);
 #if ASKED
         noteLight(path, numbers, lightOf(path, emitted), PATH_ASKED_MEDIUM, 0u, path.origin,
@@ -510,18 +516,18 @@ float flownDistance(Path path, Hit hit, float flight) {
 }
 
 // Handles what happens on the way to `hit`, the first hit within `flight`.
-int crossMedium(inout Path path, MediumRecord medium, float flight, Hit hit, PathNumbers numbers) {
+int crossMedium(inout Path path, int index, float flight, Hit hit, PathNumbers numbers) {
   vec3 inward = vec3(0.0);
 #if HETEROGENEOUS
-  if (medium.grid >= 0) {
+  if (mediumAt(index).grid >= 0) {
     bool collided;
-    int became = trackDensity(path, medium, hit.triangle != kNoHit ? hit.t : kFar, numbers, collided);
+    int became = trackDensity(path, mediumAt(index), hit.triangle != kNoHit ? hit.t : kFar, numbers, collided);
     if (!collided) return became;
   } else
 #endif
   {
     bool arrives = arrivesAt(hit, flight);
-    weighFlight(path, medium, channelProbabilities(path.throughput), flownDistance(path, hit, flight), arrives,
+    weighFlight(path, mediumAt(index), channelProbabilities(path.throughput), flownDistance(path, hit, flight), arrives,
                 numbers);
     if (arrives) return kFlightArrives;
     // Nearer to a face than a gap, the path continues from a gap beside it. The piece of flight along the face's normal
@@ -543,7 +549,7 @@ int crossMedium(inout Path path, MediumRecord medium, float flight, Hit hit, Pat
       }
     }
   }
-  int became = scatterInMedium(path, medium, numbers, lampsReach(path));
+  int became = scatterInMedium(path, mediumAt(index), numbers, lampsReach(path));
 #if !FIXED_EPSILON  // published rays have no such correction
   float shift = length(inward);
   if (shift > 0.0) {
