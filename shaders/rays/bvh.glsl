@@ -8,7 +8,6 @@
 // llvmpipe gathers from them three times as fast as from storage blocks.
 #include "shared/bindings.h"
 #include "shared/bvh.h"
-#define FINISH_LOOP (SHARED_STACK > 0)
 #include "lib/float_pairs.glsl"
 
 layout(binding = UNIT_BVH_NODES) uniform usamplerBuffer bvhNodes;      // BVH_NODE_TEXELS per BvhNode
@@ -174,9 +173,15 @@ void advanceRay(inout BvhTraversal s, bool any) {
   ivec3 low03 = ivec3(n2.x, n2.z, n3.x), low47 = ivec3(n2.y, n2.w, n3.y), high03 = ivec3(n3.z, n4.x, n4.z),
         high47 = ivec3(n3.w, n4.y, n4.w);
   uint hits = bvhHitFour(bvhChoose(low03, high03, s.ray.negative), bvhChoose(high03, low03, s.ray.negative), scale,
-                         base - error, base + error, s.tMin, s.hit.t, n1.z, s.ray.octant) |
-              bvhHitFour(bvhChoose(low47, high47, s.ray.negative), bvhChoose(high47, low47, s.ray.negative), scale,
-                         base - error, base + error, s.tMin, s.hit.t, n1.w, s.ray.octant);
+                         base - error, base + error, s.tMin, s.hit.t, n1.z, s.ray.octant);
+#if SHARED_STACK
+  // Adds 0: eight inner nodes leave no child for triangles. It keeps compilers from unpacking all 48 bytes at once.
+  int none = hits == 0xffffffffu ? 1 : 0;
+  low47 += none;
+  high47 += none;
+#endif
+  hits |= bvhHitFour(bvhChoose(low47, high47, s.ray.negative), bvhChoose(high47, low47, s.ray.negative), scale,
+                     base - error, base + error, s.tMin, s.hit.t, n1.w, s.ray.octant);
   s.siblings = uvec2(n1.x, (hits & 0xff000000u) | (n0.w >> 24));
   uint leaves = hits & 0x00ffffffu;  // triangles to test, counted from the node's first
   while (leaves != 0u) {
@@ -221,7 +226,7 @@ Hit finishRay(BvhTraversal s, vec3 direction) {
   a *= scale, b *= scale, c *= scale;
   Pairs e1 = pairsDifference(b, a), e2 = pairsDifference(c, a), corner = pairsDifference(a, s.ray.origin * scale);
   vec3 d = direction * directionScale;
-#if FINISH_LOOP
+#if SHARED_STACK
   // Component after component: a third fewer registers than all at once.
   vec4 sum = vec4(0.0), error = vec4(0.0), low = vec4(0.0);
   for (int axis = met ? 0 : 3; axis < 3; ++axis) {
