@@ -335,7 +335,8 @@ int PathTracer::tileCount() const {
 // The layout is that of shared/path_tracer.h.
 void PathTracer::readAsked() {
   const std::vector<glm::uvec4> words = state_.read<glm::uvec4>();
-  const std::size_t base = kStateHeaderBytes / kVec4Bytes + stateWords() * static_cast<std::size_t>(constants_.picture.z);
+  const std::size_t base =
+      kStateHeaderBytes / kVec4Bytes + stateWords() * static_cast<std::size_t>(constants_.picture.z);
   const std::size_t told = words[base].x, kept = std::min(told, kAskedRecords);
   if (kept < told) logWarning("{} of {} lights of the queried pixel did not fit", told - kept, told);
   const auto place = [&](std::size_t i) {

@@ -60,7 +60,8 @@ struct PairOfPairs {
 
 PairOfPairs pairsProduct(PairOfPairs a, PairOfPairs b) {
   precise vec2 product = a.hi * b.hi;
-  vec2 au = uintBitsToFloat(floatBitsToUint(a.hi) & 0xfffff000u), bu = uintBitsToFloat(floatBitsToUint(b.hi) & 0xfffff000u);
+  vec2 au = uintBitsToFloat(floatBitsToUint(a.hi) & 0xfffff000u),
+       bu = uintBitsToFloat(floatBitsToUint(b.hi) & 0xfffff000u);
   precise vec2 al = a.hi - au;
   precise vec2 bl = b.hi - bu;
   precise vec2 cut = (((au * bu - product) + au * bl) + al * bu) + al * bl;

@@ -83,7 +83,7 @@ bool crossBesides(inout Besides b, inout Hit hit, vec3 ahead) {
 }
 #endif
 
-// Read wherever they are used, rather than kept in registers.
+// Read wherever they are used on GPUs, rather than kept in registers.
 #if MEDIA
 MediumRecord mediumAt(int index) { return media[index + int(hiddenZero())]; }
 #endif
@@ -128,9 +128,12 @@ vec3 mediumTransmittance(MediumRecord medium, vec3 origin, vec3 direction, float
         }
       }
     }
-    if (tries > kMostTries)
-      through *= exp(-medium.extinction * densityIntegral(gridOf(medium), march.origin, march.direction, t, march.last));
-    else if (!goesOn && tries > 0u) through = vec3(0.0);
+    if (tries > kMostTries) {
+      float rest = densityIntegral(gridOf(medium), march.origin, march.direction, t, march.last);
+      through *= exp(-medium.extinction * rest);
+    } else if (!goesOn && tries > 0u) {
+      through = vec3(0.0);
+    }
   } else
 #endif
   {
@@ -380,12 +383,13 @@ int trackDensity(inout Path path, MediumRecord medium, float distance, PathNumbe
       words = pcg4d(words);
       t += exponentialSample(words.x) / rate;
       if (t >= march.far) break;
-      vec3 share = min(medium.extinction * (densityAt(gridOf(medium), march.origin + t * march.direction) / rate), vec3(1.0));
+      float density = densityAt(gridOf(medium), march.origin + t * march.direction);
+      vec3 share = min(medium.extinction * (density / rate), vec3(1.0));
       vec3 q = channelProbabilities(path.throughput);
       float real = dot(q, share);
 #if VOLUME_EMISSION
       if (counts(path.scatterings)) {
-        vec3 emitted = medium.emission * (densityAt(gridOf(medium), march.origin + t * march.direction) / rate);
+        vec3 emitted = medium.emission * (density / rate);
         addLight(path, emitted);
 #if ASKED
         noteLight(path, numbers, lightOf(path, emitted), PATH_ASKED_MEDIUM, 0u, path.origin,

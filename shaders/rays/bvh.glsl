@@ -241,9 +241,10 @@ Hit finishRay(BvhTraversal s, vec3 direction) {
     precise vec4 next = sum + term;
     precise vec4 back = next - sum;
     precise vec4 lost = error + ((sum - (next - back)) + (term - back));
+    precise vec4 lows = low + vec4(p.lo, q.lo);
     sum = next;
     error = lost;
-    low += vec4(p.lo, q.lo);
+    low = lows;
     e1 = Pairs(e1.hi.yzx, e1.lo.yzx);
     e2 = Pairs(e2.hi.yzx, e2.lo.yzx);
     corner = Pairs(corner.hi.yzx, corner.lo.yzx);
