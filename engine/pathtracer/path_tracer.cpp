@@ -35,7 +35,8 @@ struct StateHeader {
   std::uint32_t unfinished = 0, leakedPaths = 0, wrongCrossings = 0, longest = 0, allTurns = 0, collisions = 0,
                 padding[2]{};
 };
-constexpr std::size_t kStateWords = 6, kStateHeaderBytes = sizeof(StateHeader), kVec4Bytes = 16;
+constexpr std::size_t kStateHeaderBytes = sizeof(StateHeader), kVec4Bytes = 16;
+constexpr std::size_t kPathWords = 6, kParkedWords = 8, kParkedInteriorWords = 17;  // STATE_WORDS of path.glsl
 /// For the queried pixel: room for the light contributions of a pass of kAskedSamples.
 constexpr std::size_t kAskedHead = 1 + PATH_ASKED_PLACES, kAskedRecords = 32768,
                       kAskedWords = kAskedHead + kAskedRecords * PATH_ASKED_RECORD;
@@ -68,11 +69,11 @@ bool areLampsOutside(const Scene& scene, const PackedBoundaries& boundaries) {
 }
 
 /// Side of a tile whose lanes' state fits in a storage block.
-int tileSideOn(const gl::Capabilities& capabilities) {
+int tileSideOn(const gl::Capabilities& capabilities, std::size_t stateWords) {
   int side = capabilities.softwareRenderer ? 128 : 512;
   const auto bytes = [&] {
     return kStateHeaderBytes +
-           static_cast<std::size_t>(side) * static_cast<std::size_t>(side) * kStateWords * kVec4Bytes;
+           static_cast<std::size_t>(side) * static_cast<std::size_t>(side) * stateWords * kVec4Bytes;
   };
   while (bytes() > static_cast<std::size_t>(capabilities.maxShaderStorageBlockSize)) side /= 2;
   return side;
@@ -85,7 +86,6 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
     : settings_(settings),
       needs_(analyse(scene)),
       constantsBuffer_("path constants", sizeof(shared::PathConstants), nullptr, gl::Usage::dynamicDraw),
-      tileSide_(tileSideOn(context.capabilities())),
       mostTurns_(context.capabilities().softwareRenderer ? kSoftwareTurns : kMostTurns),
       clearTexture_(context.capabilities().clearTexture),
       turns_(settings.submissionSeconds, kLanesOfTile, mostTurns_) {
@@ -134,6 +134,7 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
       break;
   }
 
+  tileSide_ = tileSideOn(capabilities, stateWords());
   allocateFilm();
   program_ = &programs.loadCompute("path tracing", "pathtracer/path.comp", kernelFlags());
   setCamera(scene.cameras.empty() ? Camera{} : scene.cameras.front());
@@ -141,10 +142,12 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
 
 void PathTracer::allocateFilm() {
   const glm::ivec2 tile = settings_.askedPixel ? glm::ivec2(1) : glm::min(settings_.size, glm::ivec2(tileSide_));
-  const std::size_t lanes = static_cast<std::size_t>(tile.x) * static_cast<std::size_t>(tile.y);
+  // Of whole groups.
+  const glm::ivec2 groups = (tile + kGroupSide - 1) / kGroupSide;
+  const std::size_t lanes = static_cast<std::size_t>(groups.x * groups.y) * kGroupSide * kGroupSide;
   constants_.picture = glm::ivec4(settings_.size, static_cast<int>(lanes), 0);
   const std::size_t asked = settings_.askedPixel ? kAskedWords : 0;
-  state_ = gl::Buffer("path state", kStateHeaderBytes + (lanes * kStateWords + asked) * kVec4Bytes, nullptr,
+  state_ = gl::Buffer("path state", kStateHeaderBytes + (lanes * stateWords() + asked) * kVec4Bytes, nullptr,
                       gl::Usage::dynamicCopy);
   filmMean_ = gl::Texture("film mean", gl::Format::rgba32ui, settings_.size);
   filmSpread_ = gl::Texture("film spread", gl::Format::rgba32ui, settings_.size);
@@ -192,9 +195,15 @@ gl::ShaderFlags PathTracer::flags() const {
   return all;
 }
 
+std::size_t PathTracer::stateWords() const {
+  if (scene_->rays().sharedStack() == 0) return kPathWords;
+  return hasInteriors() ? kParkedInteriorWords : kParkedWords;
+}
+
 gl::ShaderFlags PathTracer::kernelFlags() const {
   gl::ShaderFlags all = flags();
   all.insert(all.end(), {{"SHARED_STACK", scene_->rays().sharedStack()},
+                         {"STATE_WORDS", static_cast<int>(stateWords())},
                          {"ASKED", settings_.askedPixel.has_value()},
                          {"SHADOW_AT_ONCE", scene_->rays().sharedStack() == 0 && !hasInteriors()}});
   return all;
@@ -326,7 +335,8 @@ int PathTracer::tileCount() const {
 // The layout is that of shared/path_tracer.h.
 void PathTracer::readAsked() {
   const std::vector<glm::uvec4> words = state_.read<glm::uvec4>();
-  const std::size_t base = kStateHeaderBytes / kVec4Bytes + kStateWords;
+  const std::size_t base =
+      kStateHeaderBytes / kVec4Bytes + stateWords() * static_cast<std::size_t>(constants_.picture.z);
   const std::size_t told = words[base].x, kept = std::min(told, kAskedRecords);
   if (kept < told) logWarning("{} of {} lights of the queried pixel did not fit", told - kept, told);
   const auto place = [&](std::size_t i) {

@@ -138,6 +138,7 @@ class PathTracer {
   void allocateFilm();
   /// With flags that do not affect the picture but how it is computed.
   gl::ShaderFlags kernelFlags() const;
+  std::size_t stateWords() const;  // of a lane in state_, in uvec4
   bool hasInteriors() const { return needs_.dielectrics || needs_.nullBoundaries || needs_.media; }
   /// Grids of distances to the nearest triangle for the boundaries of dense media.
   void addClearances(const Scene& scene);
@@ -170,7 +171,7 @@ class PathTracer {
   gl::Staging counters_{"path counters"};
   gl::Texture filmMean_, filmSpread_, filmRest_;
   std::array<gl::Texture, 3> kept_;  ///< copy of the current tile before the pass
-  int tileSide_;
+  int tileSide_ = 0;
   std::uint32_t mostTurns_;  ///< per lane and submission
   bool clearTexture_;
   Hash sceneHash_;

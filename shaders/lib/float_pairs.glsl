@@ -53,6 +53,32 @@ Pairs pairsCross(Pairs a, Pairs b) {
                          pairsProduct(Pairs(a.hi.zxy, a.lo.zxy), Pairs(b.hi.yzx, b.lo.yzx)));
 }
 
+// The same for two numbers at once.
+struct PairOfPairs {
+  vec2 hi, lo;
+};
+
+PairOfPairs pairsProduct(PairOfPairs a, PairOfPairs b) {
+  precise vec2 product = a.hi * b.hi;
+  vec2 au = uintBitsToFloat(floatBitsToUint(a.hi) & 0xfffff000u),
+       bu = uintBitsToFloat(floatBitsToUint(b.hi) & 0xfffff000u);
+  precise vec2 al = a.hi - au;
+  precise vec2 bl = b.hi - bu;
+  precise vec2 cut = (((au * bu - product) + au * bl) + al * bu) + al * bl;
+  precise vec2 rest = cut + (a.hi * b.lo + a.lo * b.hi);
+  return PairOfPairs(product, rest);
+}
+
+PairOfPairs pairsDifference(PairOfPairs a, PairOfPairs b) {
+  precise vec2 difference = a.hi - b.hi;
+  precise vec2 back = difference - a.hi;
+  precise vec2 rest = (a.hi - (difference - back)) - (b.hi + back);
+  precise vec2 low = rest + (a.lo - b.lo);
+  precise vec2 sum = difference + low;
+  precise vec2 left = low - (sum - difference);
+  return PairOfPairs(sum, left);
+}
+
 // A single number: x + y.
 vec2 pairsDot(Pairs a, Pairs b) {
   Pairs p = pairsProduct(a, b);

@@ -1,8 +1,6 @@
 // Records what lit the queried pixel: every addition to a path's radiance is written down with the path's vertices
 // (shared/path_tracer.h). A single lane runs, one path after the other.
-const uint kStateWords = 6u;  // per lane, in uvec4
-
-uint askedBase() { return kStateWords * uint(tracer.picture.z); }
+uint askedBase() { return uint(STATE_WORDS) * uint(tracer.picture.z); }
 
 uvec4 asPlace(vec3 place, float w) { return uvec4(floatBitsToUint(place), floatBitsToUint(w)); }
 

@@ -71,14 +71,15 @@ struct DensityMarch {
 
 // False if the ray misses the box.
 bool densityMarchStart(DensityRecord g, vec3 origin, vec3 direction, float tMax, out DensityMarch march) {
-  march.origin = (origin - g.min) * g.cellsPerUnit;
+  march = DensityMarch((origin - g.min) * g.cellsPerUnit, vec3(0.0), 0.0, 0.0, 0.0, ivec3(0));
   march.direction = direction * g.cellsPerUnit;
   vec3 size = vec3(g.size.xyz);
   float near = 0.0, far = tMax;
+  bool meets = true;
   for (int axis = 0; axis < 3; ++axis) {
     float o = march.origin[axis], d = march.direction[axis];
     if (abs(d) < 1e-20) {
-      if (o < 0.0 || o > size[axis]) return false;
+      meets = meets && o >= 0.0 && o <= size[axis];
       continue;
     }
     float a = -o / d, b = (size[axis] - o) / d;
@@ -90,11 +91,12 @@ bool densityMarchStart(DensityRecord g, vec3 origin, vec3 direction, float tMax,
   march.last = far;
   march.block =
       clamp(ivec3(floor((march.origin + near * march.direction) / float(g.size.w))), ivec3(0), g.blocks.xyz - 1);
-  return near < far;
+  return meets && near < far;
 }
 
 // The next segment [near, far] and its bound. False after the last one.
 bool densityMarchNext(DensityRecord g, inout DensityMarch march, out float bound) {
+  bound = 0.0;
   if (march.far >= march.last || any(lessThan(march.block, ivec3(0))) ||
       any(greaterThanEqual(march.block, g.blocks.xyz)))
     return false;

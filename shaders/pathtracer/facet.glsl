@@ -27,7 +27,9 @@ vec3 evaluate(Facet facet, vec3 o, vec3 i, out float pdf) {
     vec3 t, b;
     tangentFrame(facet.normal, t, b);
     vec3 lo = vec3(dot(o, t), dot(o, b), dot(o, facet.normal)), li = vec3(dot(i, t), dot(i, b), dot(i, facet.normal));
+#if ROUGH_DIELECTRICS
     if (facet.kind == PATH_CONDUCTOR)
+#endif
       return ggxReflect(lo, li, facet.roughness, pdf) * schlick(facet.albedo, max(dot(lo, normalize(lo + li)), 0.0));
 #if ROUGH_DIELECTRICS
     float cosT, share;
@@ -60,7 +62,7 @@ bool scatter(inout Path path, Facet facet, vec3 geometricNormal, vec2 xi, float 
   path.pdf = 0.0;
 #if GLOSSY
   bool rough = facet.roughness > 0.0 && facet.kind != PATH_MIRROR;
-  vec3 t, b, lo;
+  vec3 t = vec3(0.0), b = vec3(0.0), lo = vec3(0.0);
   if (rough) {
     tangentFrame(facet.normal, t, b);
     lo = vec3(dot(o, t), dot(o, b), dot(o, facet.normal));

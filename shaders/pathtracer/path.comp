@@ -144,11 +144,7 @@ bool survivesSurface(inout Path path, float random) {
 }
 
 // Handles the hit of the path's ray, and continues the path; false if the path has ended.
-#if TOUCHING
-bool meet(inout Path path, Hit hit, uvec4 beyond, uvec4 before, PathNumbers numbers) {
-#else
 bool meet(inout Path path, Hit hit, PathNumbers numbers) {
-#endif
   // No hit: light from infinity.
   if (hit.triangle == kNoHit) {
     addFromAfar(path, numbers);
@@ -159,12 +155,13 @@ bool meet(inout Path path, Hit hit, PathNumbers numbers) {
 #if INTERIORS
   int rank = int(materials[surface.material].boundary);
 #endif
-#if !TOUCHING
   uvec4 beyond = uvec4(0u);  // the closed boundaries that contain the other side
-#if INTERIORS
+#if TOUCHING
+  takeBesides();
+  beyond = besides.beyond;
+#elif INTERIORS
   beyond = path.inside;
   if (rank >= 0 && !crossBoundary(beyond, rank, surface.front)) atomicAdd(wrongCrossings, 1u);
-#endif
 #endif
   PathMaterial material = materials[surface.material];
 #if METAL_MAPS && GLOSSY
@@ -203,8 +200,11 @@ bool meet(inout Path path, Hit hit, PathNumbers numbers) {
   Facet facet = facetOf(path, surface, material, iorBeyond);
   ++path.scatterings;
 #if NEXT_EVENT
+  park(path);
   if (!isSmooth(facet) && counts(path.scatterings))
     addNextEvent(path, surface, hit.triangle, facet, iorBeyond, beyond, numbers);
+  forgetAddresses();
+  take(path);
 #endif
 #if UNOCCLUDED
   if (path.scatterings == 2u && facet.kind == PATH_DIFFUSE) {  // surfaces do not block: continue to those behind
@@ -227,6 +227,10 @@ bool meet(inout Path path, Hit hit, PathNumbers numbers) {
   if (!scatter(path, facet, surface.geometricNormal, randomPair(numbers, path.event, kPurposeScatter),
                unitFloat(choice.x)))
     return false;
+#if TOUCHING
+  takeBesides();
+  beyond = besides.beyond;
+#endif
 #if DIELECTRICS
   if (dot(path.direction, surface.geometricNormal) < 0.0) {
     path.ior = iorBeyond;
@@ -238,8 +242,8 @@ bool meet(inout Path path, Hit hit, PathNumbers numbers) {
   startAt(path, surface, hit.triangle);
 #if TOUCHING
   if (dot(path.direction, surface.geometricNormal) > 0.0) {
-    path.inside = before;
-    path.ior = iorInside(before);
+    path.inside = besides.before;
+    path.ior = iorInside(besides.before);
   }
 #endif
   return true;
@@ -253,6 +257,32 @@ vec3 twoSum(vec3 a, vec3 b, out vec3 rest) {
   rest = error;
   return sum;
 }
+
+// A pixel's film. A GPU reads it at the end of every sample, a software renderer once.
+struct Film {
+  vec3 mean, rest, spread;
+};
+
+Film readFilm(ivec2 pixel) {
+  return Film(uintBitsToFloat(imageLoad(filmMean, pixel).xyz), uintBitsToFloat(imageLoad(filmRest, pixel).xyz),
+              uintBitsToFloat(imageLoad(filmSpread, pixel).xyz));
+}
+
+void writeFilm(ivec2 pixel, Film film, uint samples) {
+  imageStore(filmMean, pixel, uvec4(floatBitsToUint(film.mean), samples));
+  imageStore(filmSpread, pixel, uvec4(floatBitsToUint(film.spread), 0u));
+  imageStore(filmRest, pixel, uvec4(floatBitsToUint(film.rest), 0u));
+}
+
+// Welford's mean and sum of squares [Welford1962], with the mean's low part.
+void addSample(inout Film film, vec3 radiance, uint samples) {
+  vec3 difference = (radiance - film.mean) - film.rest;
+  film.mean = twoSum(film.mean, film.rest + difference / float(samples), film.rest);
+  film.spread += difference * ((radiance - film.mean) - film.rest);
+}
+
+ivec2 pixelAt(uint where) { return ivec2(where & 0xffffu, where >> 16u); }
+uint indexOf(ivec2 pixel) { return uint(pixel.y * tracer.picture.x + pixel.x); }
 
 // A lane's job: which kind of ray it traces.
 const uint kPathRay = 0u;
@@ -271,21 +301,30 @@ const int kGoesOn = 7;   // with the next ray
 
 void main() {
   // The pixel's film, and the path left by the previous dispatch.
-  ivec2 lane = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(lane, tracer.tile.zw))) return;
-  ivec2 pixel = tracer.tile.xy + lane;
-  uvec4 meanWords = imageLoad(filmMean, pixel);
-  uint samples = meanWords.w;
+  ivec2 place = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(place, tracer.tile.zw))) return;
+  ivec2 pixel = tracer.tile.xy + place;
+  uint samples = imageLoad(filmMean, pixel).w;
   if (samples >= tracer.sampleTarget) return;
-  vec3 mean = uintBitsToFloat(meanWords.xyz), rest = uintBitsToFloat(imageLoad(filmRest, pixel).xyz);
-  vec3 spread = uintBitsToFloat(imageLoad(filmSpread, pixel).xyz);
 
   // picture.w: index of the film's first sample.
+#if PARKED
+  Film film;
+#else
+  Film film = readFilm(pixel);
+#endif
+  uint where = uint(pixel.x) | uint(pixel.y) << 16u;
   PathNumbers numbers =
-      PathNumbers(uint(pixel.y * tracer.picture.x + pixel.x), uint(tracer.picture.w) + samples, tracer.seed);
-  Lane here = Lane(uint(lane.y * tracer.tile.z + lane.x), uint(tracer.picture.z));
+      PathNumbers(indexOf(pixel), uint(tracer.picture.w) + samples, tracer.seed);
+  home = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u * uint(STATE_WORDS) + gl_LocalInvocationIndex;
   Path path;
-  if (!restorePath(here, path)) path = startPath(pixel, numbers);
+  if (isWaiting()) {
+    restorePath(path);
+  } else {
+    path = startPath(pixel, numbers);
+    park(path);
+    startRadiance(path);
+  }
 
   // One traversal serves all rays, since drivers inline every function: each further call site costs registers and
   // minutes of compiling. The lane's job says what to trace next. Its stage says what to do with the hit; each stage
@@ -293,24 +332,33 @@ void main() {
   bool inFlight = true;
   uint job = kPathRay;
   int after = kGoesOn;  // the stage to resume after a shadow ray has been traced to its end
+#if INTERIORS
   Hit arrival;          // the hit of the path's ray
+#endif
   shadow.waits = false;
 #if MEDIA
   float flight = 3e38;  // length of the path's current flight
 #endif
 #if TOUCHING
   Hit crossed;          // the boundary that a shadow ray is crossing
-  Besides besides;
   bool right = true;    // whether the path could validly cross the boundary
 #endif
   for (;;) {
+#if PARKED
+    forgetAddresses();
+    where += hiddenZero();
+    numbers.pixel = indexOf(pixelAt(where));
+#endif
     // Set up the ray of this iteration.
     int stage = kTraces;
-    Ray ray = Ray(path.origin, 0.0, path.direction, 3e38);
-    uint skip = path.skip;
+    Ray ray = Ray(vec3(0.0), 0.0, vec3(1.0), 0.0);
+    uint skip = kNoHit;
     if (job == kPathRay) {
       if (loopTurns >= tracer.turns) break;
       loopTurns += 4u;
+      take(path);
+      ray = Ray(path.origin, 0.0, path.direction, 3e38);
+      skip = path.skip;
 #if ASKED
       notePlace(path);
 #endif
@@ -319,7 +367,10 @@ void main() {
       int medium = mediumInside(path.inside);
       flight = medium >= 0 ? beginFlight(path, media[medium], numbers) : 3e38;
 #if WALKS
-      if (medium >= 0 && !walk(path, media[medium], flight, numbers)) stage = kEnds;
+      if (medium >= 0) {
+        if (!walk(path, media[medium], flight, numbers)) stage = kEnds;
+        park(path);
+      }
       skip = path.skip;
 #endif
       ray = Ray(path.origin, 0.0, path.direction, flight + flightMargin());
@@ -327,6 +378,7 @@ void main() {
     }
 #if !SHADOW_AT_ONCE
     if (job == kShadowRay) {
+      takeShadow();
 #if INTERIORS
       ray = Ray(shadow.origin, shadow.tMin, shadow.direction, shadow.infinite ? 3e38 : 1.0);
 #else
@@ -336,15 +388,21 @@ void main() {
     }
 #endif
 #if TOUCHING
-    vec3 ahead = vec3(0.0);
-    float besidesGap = 0.0;
     if (job == kBesidesRay) {
+      takeBesides();
       Surface surface;
-      if (shadow.waits) surface = surfaceAt(crossed.triangle, crossed.barycentrics, shadow.direction);
-      else surface = surfaceAt(arrival.triangle, arrival.barycentrics, path.direction);
-      besidesGap = gapAt(surface);
-      ahead = -besidesGap * surface.geometricNormal;
-      ray = besidesRay(besides, surface.position, ahead);
+      if (shadow.waits) {
+        takeShadow();
+        takeHit(1u, crossed);
+        surface = surfaceAt(crossed.triangle, crossed.barycentrics, shadow.direction);
+      } else {
+        take(path);
+        takeHit(0u, arrival);
+        surface = surfaceAt(arrival.triangle, arrival.barycentrics, path.direction);
+      }
+      besides.gap = gapAt(surface);
+      ray = besidesRay(besides, surface.position, -besides.gap * surface.geometricNormal);
+      parkBesides();
       skip = besides.skip;
     }
 #endif
@@ -360,42 +418,63 @@ void main() {
     while (!isDone(traversal)) advanceRay(traversal, any);
     Hit hit = traversal.hit;
     if (!any) hit = finishRay(traversal, ray.direction);
+#if PARKED
+    forgetAddresses();
+    where += hiddenZero();
+    numbers.pixel = indexOf(pixelAt(where));
+#endif
 
     // Assign the hit to the job: the path's arrival, a step across a boundary, or a shadow ray's hit.
+#if !INTERIORS
+    Hit arrival = hit;
+#endif
     if (job == kPathRay && stage == kTraces) {
       arrival = hit;
+      parkHit(0u, hit);
       stage = kFlies;
     }
 #if TOUCHING
-    if (job == kBesidesRay && !crossBesides(besides, hit, ahead)) {
-      if (shadow.waits) {
+    if (job == kBesidesRay) {
+      takeBesides();
+      vec3 ahead = 0.5 * ray.direction;
+      bool goesOn = crossBesides(besides, hit, ahead);
+      if (!goesOn && shadow.waits) {
+        takeShadow();
         shadow.inside = besides.beyond;
         if (hit.triangle != kNoHit) shadow.light = vec3(0.0);
         shadow.tMin +=
-            dot(ahead, ahead) / max(dot(ahead, shadow.direction), 0.01 * besidesGap * length(shadow.direction));
+            dot(ahead, ahead) / max(dot(ahead, shadow.direction), 0.01 * besides.gap * length(shadow.direction));
         job = kShadowRay;
         if (!shadowGoesOn()) stage = kLit;
-      } else {
+        parkShadow();
+      } else if (!goesOn) {
         job = kPathRay;
         stage = kMeets;
         if (hit.triangle != kNoHit) {  // a surface immediately behind: the path has hit it from its current position
+          take(path);
+          takeHit(0u, arrival);
           besides.beyond = besides.before = path.inside;
           arrival.triangle = hit.triangle;
           arrival.barycentrics = hit.barycentrics;
+          parkHit(0u, arrival);
         } else if (!right) {
           atomicAdd(wrongCrossings, 1u);
         }
       }
+      parkBesides();
     } else
 #endif
     if (job == kShadowRay) {
+      takeShadow();
 #if INTERIORS
       bool goesOn = crossShadow(hit);
 #if TOUCHING
       if (goesOn) {
         job = kBesidesRay;
         crossed = hit;
-        besides = Besides(shadow.inside, shadow.inside, 0.0, hit.triangle, 0u);
+        parkHit(1u, hit);
+        besides = Besides(shadow.inside, shadow.inside, 0.0, hit.triangle, 0u, 0.0);
+        parkBesides();
       }
 #else
       goesOn = goesOn && shadowGoesOn();
@@ -405,11 +484,14 @@ void main() {
       if (hit.triangle != kNoHit) shadow.light = vec3(0.0);
       stage = kLit;
 #endif
+      parkShadow();
     }
     // Add the shadow ray's light; the path resumes where it waited.
     if (stage == kLit) {
-      path.radiance += shadow.light;
+      takeShadow();
+      addRadiance(path, shadow.light);
 #if ASKED
+      take(path);
       noteShadow(path, after == kFlown, numbers);
 #endif
       shadow.waits = false;
@@ -420,10 +502,12 @@ void main() {
     // The flight through a medium: sample lamps along it, then decide whether it ends before the surface.
 #if MEDIA
     if (stage == kFlies) {
+      take(path);
       int medium = mediumInside(path.inside);
       stage = medium < 0 ? kArrives : kFlown;
 #if NEXT_EVENT && (POINTS || SPOTS) && !DISTANCE_WITHOUT_PDF && !BOOSTED_INTERACTION
       if (medium >= 0 && media[medium].grid < 0 && lampsReach(path)) {
+        takeHit(0u, arrival);
         addPointLight(path, media[medium], channelProbabilities(path.throughput), flownDistance(path, arrival, flight),
                       numbers);
         if (shadow.waits) {
@@ -435,7 +519,10 @@ void main() {
 #endif
     }
     if (stage == kFlown) {
-      int became = crossMedium(path, media[mediumInside(path.inside)], flight, arrival, numbers);
+      take(path);
+      takeHit(0u, arrival);
+      int became = crossMedium(path, mediumInside(path.inside), flight, arrival, numbers);
+      park(path);
       stage = became == kFlightArrives ? kArrives : became == kScattered ? kGoesOn : kEnds;
       if (stage != kArrives && shadow.waits) {
         job = kShadowRay;
@@ -452,21 +539,23 @@ void main() {
 #if TOUCHING
       // The other boundaries crossed by the step to the far side: a face that coincides with this one belongs to the
       // same interface.
-      besides = Besides(path.inside, path.inside, 0.0, arrival.triangle, 0u);
+      take(path);
+      takeHit(0u, arrival);
+      besides = Besides(path.inside, path.inside, 0.0, arrival.triangle, 0u, 0.0);
       int rank = arrival.triangle != kNoHit ? rankOf(arrival.triangle) : -1;
       if (rank >= 0) {
         right = crossBoundary(besides.beyond, rank, facesAgainst(arrival.triangle, path.direction));
         job = kBesidesRay;
         stage = kTraces;
       }
+      parkBesides();
 #endif
     }
     if (stage == kMeets) {
-#if TOUCHING
-      stage = meet(path, arrival, besides.beyond, besides.before, numbers) ? kGoesOn : kEnds;
-#else
+      take(path);
+      takeHit(0u, arrival);
       stage = meet(path, arrival, numbers) ? kGoesOn : kEnds;
-#endif
+      park(path);
 #if SHADOW_AT_ONCE
       if (shadow.waits &&
           !anyHit(Ray(shadow.origin, 0.0, shadow.direction, shadow.infinite ? 3e38 : 1.0), shadow.skip)) {
@@ -484,18 +573,25 @@ void main() {
       }
 #endif
     }
-    // A sample is complete: update Welford's mean and sum of squares [Welford1962], with the mean's low part.
+    // A sample is complete.
     if (stage == kEnds) {
-      ++samples;
-      vec3 difference = (path.radiance - mean) - rest;
-      mean = twoSum(mean, rest + difference / float(samples), rest);
-      spread += difference * ((path.radiance - mean) - rest);
-      numbers.sampleIndex = uint(tracer.picture.w) + samples;
+      uint samples = ++numbers.sampleIndex - uint(tracer.picture.w);
+#if PARKED
+      where += hiddenZero();
+      pixel = pixelAt(where);
+      film = readFilm(pixel);
+#endif
+      addSample(film, radianceOf(path), samples);
+#if PARKED
+      writeFilm(pixel, film, samples);
+#endif
       if (samples >= tracer.sampleTarget) {
         inFlight = false;
         break;
       }
       path = startPath(pixel, numbers);
+      park(path);
+      startRadiance(path);
     }
   }
 
@@ -505,8 +601,15 @@ void main() {
 #if MEDIA
   atomicAdd(collisions, collisionCount);
 #endif
-  imageStore(filmMean, pixel, uvec4(floatBitsToUint(mean), samples));
-  imageStore(filmSpread, pixel, uvec4(floatBitsToUint(spread), 0u));
-  imageStore(filmRest, pixel, uvec4(floatBitsToUint(rest), 0u));
-  savePath(here, path, inFlight);
+#if !PARKED
+  writeFilm(pixel, film, numbers.sampleIndex - uint(tracer.picture.w));
+#endif
+  if (inFlight) {
+    atomicAdd(unfinished, 1u);
+#if !PARKED
+    savePath(path);
+#endif
+  } else {
+    state[wordAt(4u)].x = 0u;
+  }
 }

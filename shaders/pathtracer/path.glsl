@@ -1,5 +1,9 @@
 // The path that a lane traces: its state, how it starts, and how it waits for the next submission. path.comp defines
 // its throughput.
+//
+// Flag STATE_WORDS: of a lane in the state buffer. PARKED, on GPUs: what is not needed while a ray is traced, or in
+// another stage, lies there instead of in registers. take...() and park...() do nothing otherwise.
+#define PARKED (SHARED_STACK > 0)
 
 layout(std430, binding = 5) restrict buffer StateBlock {
   uint unfinished;      // pixels of the tile that still lack samples
@@ -9,7 +13,7 @@ layout(std430, binding = 5) restrict buffer StateBlock {
   // loop iterations of all lanes; below 2^32, since a submission has at most 2^28 plus the last segments
   uint allTurns;
   uint collisions;      // in media, over all lanes
-  uvec4 state[];        // STATE_WORDS a lane, lane by lane within each
+  uvec4 state[];        // STATE_WORDS a lane: for each group of 64 lanes, word by word
 };
 
 struct Path {
@@ -59,7 +63,6 @@ vec3 lightOf(Path path, vec3 light) {
 #endif
   return path.throughput * light;
 }
-void addLight(inout Path path, vec3 light) { path.radiance += lightOf(path, light); }
 
 Path startPath(ivec2 pixel, PathNumbers numbers) {
 #if PIXEL_CENTRES
@@ -88,47 +91,86 @@ Path startPath(ivec2 pixel, PathNumbers numbers) {
   return path;
 }
 
-// A lane's position in `state`.
-struct Lane {
-  uint slot;
-  uint count;  // number of lanes
-};
+// A lane's words in `state`. The path's are origin, skip; direction, pdf; throughput, travelled; radiance, scatterings
+// and chain; event, ior, head, face; and with INTERIORS inside. The others are for PARKED alone.
+uint home = 0u;
+const uint kShadowWord = INTERIORS != 0 ? 6u : 5u;
+const uint kHitWord = 12u;      // the path's, and the boundary that a shadow ray is crossing
+const uint kBesidesWord = 14u;
+uint wordAt(uint word) { return home + 64u * word; }
 
-// Restores the waiting path, if there is one.
-bool restorePath(Lane lane, out Path path) {
-  uvec4 saved = state[lane.slot + 4u * lane.count];
-  if ((saved.x & kInFlight) == 0u) return false;
-  uvec4 w0 = state[lane.slot], w1 = state[lane.slot + lane.count];
-  uvec4 w2 = state[lane.slot + 2u * lane.count], w3 = state[lane.slot + 3u * lane.count];
+// 0, which compilers cannot know. Added to what stays the same, lest they compute all addresses and hashes before the
+// loop and keep them in some thirty registers.
+uint hiddenZero() { return PARKED ? loopTurns >> 31u : 0u; }
+void forgetAddresses() { home += hiddenZero(); }
+
+// Whether a path waits there for its next ray.
+bool isWaiting() { return (state[wordAt(4u)].x & kInFlight) != 0u; }
+
+void restorePath(out Path path) {
+  uvec4 w0 = state[wordAt(0u)], w1 = state[wordAt(1u)], w2 = state[wordAt(2u)], w3 = state[wordAt(3u)],
+        w4 = state[wordAt(4u)];
   path = Path(uintBitsToFloat(w0.xyz), w0.w, uintBitsToFloat(w1.xyz), uintBitsToFloat(w1.w), uintBitsToFloat(w2.xyz),
-              uintBitsToFloat(w2.w), uintBitsToFloat(w3.xyz), w3.w & 0xffffffu, saved.x & ~kInFlight,
-              uintBitsToFloat(saved.y), w3.w >> 24u
+              uintBitsToFloat(w2.w), uintBitsToFloat(w3.xyz), w3.w & 0xffffffu, w4.x & ~kInFlight,
+              uintBitsToFloat(w4.y), w3.w >> 24u
 #if INTERIORS
               ,
-              state[lane.slot + 5u * lane.count], uintBitsToFloat(saved.z), saved.w
+              state[wordAt(5u)], uintBitsToFloat(w4.z), w4.w
 #endif
   );
-  return true;
 }
 
-void savePath(Lane lane, Path path, bool inFlight) {
-  state[lane.slot + 4u * lane.count] = uvec4(inFlight ? path.event | kInFlight : 0u, floatBitsToUint(path.ior),
+// All but the radiance.
+void parkPath(Path path) {
+  state[wordAt(0u)] = uvec4(floatBitsToUint(path.origin), path.skip);
+  state[wordAt(1u)] = uvec4(floatBitsToUint(path.direction), floatBitsToUint(path.pdf));
+  state[wordAt(2u)] = uvec4(floatBitsToUint(path.throughput), floatBitsToUint(path.travelled));
+  state[wordAt(3u)].w = min(path.scatterings, 0xffffffu) | path.chain << 24u;
 #if INTERIORS
-                                             floatBitsToUint(path.head), path.face);
+  state[wordAt(4u)] =
+      uvec4(path.event | kInFlight, floatBitsToUint(path.ior), floatBitsToUint(path.head), path.face);
+  state[wordAt(5u)] = path.inside;
 #else
-                                             0u, 0u);
+  state[wordAt(4u)] = uvec4(path.event | kInFlight, floatBitsToUint(path.ior), 0u, 0u);
 #endif
-  if (!inFlight) return;
-  state[lane.slot] = uvec4(floatBitsToUint(path.origin), path.skip);
-  state[lane.slot + lane.count] = uvec4(floatBitsToUint(path.direction), floatBitsToUint(path.pdf));
-  state[lane.slot + 2u * lane.count] = uvec4(floatBitsToUint(path.throughput), floatBitsToUint(path.travelled));
-  state[lane.slot + 3u * lane.count] =
-      uvec4(floatBitsToUint(path.radiance), min(path.scatterings, 0xffffffu) | path.chain << 24u);
-#if INTERIORS
-  state[lane.slot + 5u * lane.count] = path.inside;
-#endif
-  atomicAdd(unfinished, 1u);
 }
+
+vec3 parkedRadiance() { return uintBitsToFloat(state[wordAt(3u)].xyz); }
+void parkRadiance(vec3 radiance) { state[wordAt(3u)].xyz = floatBitsToUint(radiance); }
+
+void savePath(Path path) {
+  parkPath(path);
+  parkRadiance(path.radiance);
+}
+
+#if PARKED
+void take(out Path path) { restorePath(path); }
+void park(Path path) { parkPath(path); }
+#if INTERIORS
+void takeHit(uint which, out Hit hit) {
+  uvec4 w = state[wordAt(kHitWord + which)];
+  hit = Hit(uintBitsToFloat(w.x), w.y, uintBitsToFloat(w.zw));
+}
+void parkHit(uint which, Hit hit) {
+  state[wordAt(kHitWord + which)] = uvec4(floatBitsToUint(hit.t), hit.triangle, floatBitsToUint(hit.barycentrics));
+}
+#endif
+vec3 radianceOf(Path path) { return parkedRadiance(); }
+void startRadiance(Path path) { parkRadiance(path.radiance); }
+void addRadiance(Path path, vec3 light) { parkRadiance(parkedRadiance() + light); }
+#else
+void take(Path path) {}
+void park(Path path) {}
+vec3 radianceOf(Path path) { return path.radiance; }
+void startRadiance(Path path) {}
+void addRadiance(inout Path path, vec3 light) { path.radiance += light; }
+#endif
+#if !PARKED || !INTERIORS
+void takeHit(uint which, Hit hit) {}
+void parkHit(uint which, Hit hit) {}
+#endif
+
+void addLight(inout Path path, vec3 light) { addRadiance(path, lightOf(path, light)); }
 
 #if MEDIA
 // In media a ray starts nearer to its surface than elsewhere, 8 units in the last place of the triangle's largest

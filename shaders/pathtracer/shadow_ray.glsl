@@ -28,6 +28,42 @@ Shadow shadow;
 const uint kPurposeTransmittance = kFreePurpose + 3u;
 #endif
 
+#if PARKED
+void takeShadow() {
+  uvec4 w0 = state[wordAt(kShadowWord)], w1 = state[wordAt(kShadowWord + 1u)], w2 = state[wordAt(kShadowWord + 2u)];
+  shadow.origin = uintBitsToFloat(w0.xyz);
+  shadow.skip = w0.w;
+  shadow.direction = uintBitsToFloat(w1.xyz);
+  shadow.infinite = w1.w != 0u;
+  shadow.light = uintBitsToFloat(w2.xyz);
+#if INTERIORS
+  uvec4 w3 = state[wordAt(kShadowWord + 3u)];
+  shadow.tMin = uintBitsToFloat(w2.w);
+  shadow.from = uintBitsToFloat(w3.x);
+  shadow.ior = uintBitsToFloat(w3.y);
+  shadow.crossed = w3.z;
+  shadow.inside = state[wordAt(kShadowWord + 4u)];
+  shadow.words = state[wordAt(kShadowWord + 5u)];
+#endif
+}
+void parkShadow() {
+  state[wordAt(kShadowWord)] = uvec4(floatBitsToUint(shadow.origin), shadow.skip);
+  state[wordAt(kShadowWord + 1u)] = uvec4(floatBitsToUint(shadow.direction), shadow.infinite ? 1u : 0u);
+#if INTERIORS
+  state[wordAt(kShadowWord + 2u)] = uvec4(floatBitsToUint(shadow.light), floatBitsToUint(shadow.tMin));
+  state[wordAt(kShadowWord + 3u)] =
+      uvec4(floatBitsToUint(shadow.from), floatBitsToUint(shadow.ior), shadow.crossed, 0u);
+  state[wordAt(kShadowWord + 4u)] = shadow.inside;
+  state[wordAt(kShadowWord + 5u)] = shadow.words;
+#else
+  state[wordAt(kShadowWord + 2u)] = uvec4(floatBitsToUint(shadow.light), 0u);
+#endif
+}
+#else
+void takeShadow() {}
+void parkShadow() {}
+#endif
+
 // start: origin of the ray, on the triangle `skip`.
 void askLight(Path path, vec3 contribution, vec3 start, LightSample light, uint skip, PathNumbers numbers) {
   shadow.waits = true;
@@ -47,6 +83,7 @@ void askLight(Path path, vec3 contribution, vec3 start, LightSample light, uint 
   shadow.inside = path.inside;
   shadow.words = randomWords(numbers, path.event, kPurposeTransmittance);
 #endif
+  parkShadow();
 }
 
 #if ASKED

@@ -39,8 +39,26 @@ struct Besides {
   float tMin;
   uint skip;
   uint crossed;
+  float gap;  // of the surface
 };
+Besides besides;
 const uint kMostBesides = 8u;
+#if PARKED
+void takeBesides() {
+  uvec4 w = state[wordAt(kBesidesWord + 2u)];
+  besides = Besides(state[wordAt(kBesidesWord)], state[wordAt(kBesidesWord + 1u)], uintBitsToFloat(w.x), w.y, w.z,
+                    uintBitsToFloat(w.w));
+}
+void parkBesides() {
+  state[wordAt(kBesidesWord)] = besides.beyond;
+  state[wordAt(kBesidesWord + 1u)] = besides.before;
+  state[wordAt(kBesidesWord + 2u)] =
+      uvec4(floatBitsToUint(besides.tMin), besides.skip, besides.crossed, floatBitsToUint(besides.gap));
+}
+#else
+void takeBesides() {}
+void parkBesides() {}
+#endif
 
 // ahead: one gap long, through to the far side of the surface.
 Ray besidesRay(Besides b, vec3 position, vec3 ahead) { return Ray(position - ahead, b.tMin, 2.0 * ahead, 1.0); }
@@ -65,47 +83,63 @@ bool crossBesides(inout Besides b, inout Hit hit, vec3 ahead) {
 }
 #endif
 
+// Read wherever they are used on GPUs, rather than kept in registers.
+#if MEDIA
+MediumRecord mediumAt(int index) { return media[index + int(hiddenZero())]; }
+#endif
+#if HETEROGENEOUS
+DensityRecord gridOf(MediumRecord medium) { return densityRecords[medium.grid + int(hiddenZero())]; }
+#endif
+
 #if MEDIA
 const uint kMostTries = 256u;  // tentative collisions of a straight line through a grid
 
 vec3 mediumTransmittance(MediumRecord medium, vec3 origin, vec3 direction, float distance, inout uvec4 words) {
+  vec3 through = vec3(1.0);
 #if HETEROGENEOUS
   if (medium.grid >= 0) {
     // Ratio tracking [Novak2014]: each tentative collision multiplies by the probability of a null collision. Roulette
     // starts below a tenth. A bound far above the density causes endless null collisions, so after a maximum number the
     // rest of the way is integrated cell by cell. That keeps the mean unbiased: at every collision, the estimate so far
     // times the transmittance of the rest has the transmittance of the whole way as its mean.
-    DensityRecord g = densityRecords[medium.grid];
     DensityMarch march;
-    vec3 through = vec3(1.0);
-    float bound;
+    float bound = 0.0, t = 0.0;
     uint tries = 0u;
-    if (!densityMarchStart(g, origin, direction, distance, march)) return through;
-    while (densityMarchNext(g, march, bound)) {
+    bool goesOn = densityMarchStart(gridOf(medium), origin, direction, distance, march);
+    while (goesOn && densityMarchNext(gridOf(medium), march, bound)) {
       ++loopTurns;
       float rate = medium.majorant * bound;
       if (!(rate > 0.0)) continue;
-      float t = march.near;
+      t = march.near;
       for (;;) {
         ++loopTurns;
-        if (++tries > kMostTries)
-          return through * exp(-medium.extinction * densityIntegral(g, march.origin, march.direction, t, march.last));
+        goesOn = ++tries <= kMostTries;
+        if (!goesOn) break;
         words = pcg4d(words);
         t += exponentialSample(words.x) / rate;
         if (t >= march.far) break;
-        float d = densityAt(g, march.origin + t * march.direction);
+        float d = densityAt(gridOf(medium), march.origin + t * march.direction);
         through *= max(1.0 - medium.extinction * (d / rate), vec3(0.0));
         float largest = max(through.r, max(through.g, through.b));
         if (largest < 0.1) {
-          if (unitFloat(words.y) >= 10.0 * largest) return vec3(0.0);
+          goesOn = unitFloat(words.y) < 10.0 * largest;
+          if (!goesOn) break;
           through /= 10.0 * largest;
         }
       }
     }
-    return through;
-  }
+    if (tries > kMostTries) {
+      float rest = densityIntegral(gridOf(medium), march.origin, march.direction, t, march.last);
+      through *= exp(-medium.extinction * rest);
+    } else if (!goesOn && tries > 0u) {
+      through = vec3(0.0);
+    }
+  } else
 #endif
-  return exp(-medium.extinction * min(distance, kFar));
+  {
+    through = exp(-medium.extinction * min(distance, kFar));
+  }
+  return through;
 }
 #endif
 
@@ -117,7 +151,7 @@ bool crossShadow(Hit hit) {
   if (hit.triangle != kNoHit) {
     rank = rankOf(hit.triangle);
     front = facesAgainst(hit.triangle, shadow.direction);
-    if (rank < 0 || ++shadow.crossed >= 256u) {
+    if (rank < 0 || shadow.crossed >= 255u) {
       shadow.light = vec3(0.0);
       return false;
     }
@@ -127,12 +161,20 @@ bool crossShadow(Hit hit) {
   if (medium >= 0) {
     float unit = shadow.infinite ? 1.0 : length(shadow.direction),
           far = hit.triangle == kNoHit ? (shadow.infinite ? kFar : 1.0) : hit.t;
-    shadow.light *= mediumTransmittance(media[medium], shadow.origin + shadow.from * shadow.direction,
-                                        shadow.direction / unit, (far - shadow.from) * unit, shadow.words);
+    uvec4 words = shadow.words;
+    vec3 through = mediumTransmittance(media[medium], shadow.origin + shadow.from * shadow.direction,
+                                       shadow.direction / unit, (far - shadow.from) * unit, words);
+#if HETEROGENEOUS
+    forgetAddresses();
+    takeShadow();
+#endif
+    shadow.words = words;
+    shadow.light *= through;
   }
 #endif
   if (hit.triangle == kNoHit || all(equal(shadow.light, vec3(0.0)))) return false;
   crossBoundary(shadow.inside, rank, front);
+  ++shadow.crossed;
   shadow.tMin = shadow.from = hit.t;
   shadow.skip = hit.triangle;
   return true;
@@ -209,7 +251,7 @@ bool isPointLike(uvec4 words) {
 void addPointLight(inout Path path, MediumRecord medium, vec3 q, float s, PathNumbers numbers) {
   uvec4 words = randomWords(numbers, path.event, kPurposePick);
   if (!counts(path.scatterings + 1u) || all(equal(medium.albedo, vec3(0.0))) || !isPointLike(words)) return;
-  LightSample light;
+  LightSample light = LightSample(vec3(0.0), 0.0, vec3(0.0), vec3(0.0), false);
   vec2 xi = randomPair(numbers, path.event, kPurposeLight);
   if (!sampleLight(path.origin, xi, words, light)) {
     // A spot may not light the origin; its position is needed all the same.
@@ -285,7 +327,7 @@ int scatterInMedium(inout Path path, MediumRecord medium, PathNumbers numbers, b
   if (path.scatterings >= tracer.maxScatterings || all(equal(path.throughput, vec3(0.0)))) return kEnded;
   ++path.scatterings;
 #if NEXT_EVENT
-  LightSample light;
+  LightSample light = LightSample(vec3(0.0), 0.0, vec3(0.0), vec3(0.0), false);
 #if DISTANCE_WITHOUT_PDF || BOOSTED_INTERACTION
   const bool asked = false;
 #else
@@ -326,28 +368,28 @@ int scatterInMedium(inout Path path, MediumRecord medium, PathNumbers numbers, b
 // continues with the next ray: exponential flights have no memory, and no submission is held up.
 int trackDensity(inout Path path, MediumRecord medium, float distance, PathNumbers numbers, out bool collided) {
   collided = false;
-  DensityRecord g = densityRecords[medium.grid];
   DensityMarch march;
-  if (!densityMarchStart(g, path.origin, path.direction, distance, march)) return kFlightArrives;
   uvec4 words = randomWords(numbers, path.event, kPurposeFlight);
-  float bound;
+  float bound = 0.0, t = 0.0;
   uint tries = 0u;
-  while (densityMarchNext(g, march, bound)) {
+  bool goesOn = densityMarchStart(gridOf(medium), path.origin, path.direction, distance, march);
+  while (goesOn && densityMarchNext(gridOf(medium), march, bound)) {
     ++loopTurns;
     float rate = medium.majorant * bound;
     if (!(rate > 0.0)) continue;
-    float t = march.near;
+    t = march.near;
     for (;;) {
       ++loopTurns;
       words = pcg4d(words);
       t += exponentialSample(words.x) / rate;
       if (t >= march.far) break;
-      vec3 share = min(medium.extinction * (densityAt(g, march.origin + t * march.direction) / rate), vec3(1.0));
+      float density = densityAt(gridOf(medium), march.origin + t * march.direction);
+      vec3 share = min(medium.extinction * (density / rate), vec3(1.0));
       vec3 q = channelProbabilities(path.throughput);
       float real = dot(q, share);
 #if VOLUME_EMISSION
       if (counts(path.scatterings)) {
-        vec3 emitted = medium.emission * (densityAt(g, march.origin + t * march.direction) / rate);
+        vec3 emitted = medium.emission * (density / rate);
         addLight(path, emitted);
 #if ASKED
         noteLight(path, numbers, lightOf(path, emitted), PATH_ASKED_MEDIUM, 0u, path.origin,
@@ -355,25 +397,27 @@ int trackDensity(inout Path path, MediumRecord medium, float distance, PathNumbe
 #endif
       }
 #endif
-      bool collides = unitFloat(words.y) < real;
+      collided = unitFloat(words.y) < real;
       if (medium.greyExtinction != 0)
-        path.throughput *= collides ? medium.albedo : vec3(1.0);
+        path.throughput *= collided ? medium.albedo : vec3(1.0);
       else
-        path.throughput *= collides ? medium.albedo * share / real : (1.0 - share) / (1.0 - real);
-      if (collides || ++tries == 64u) {
-        path.origin += t * path.direction;
-        if (collides) {
-          collided = true;
-          return kScattered;
-        }
-        path.travelled += t;
-        path.head = 0.0;
-        ++path.event;
-        return kScattered;
-      }
+        path.throughput *= collided ? medium.albedo * share / real : (1.0 - share) / (1.0 - real);
+      goesOn = !collided && ++tries < 64u;
+      if (!goesOn) break;
     }
   }
-  return kFlightArrives;
+  vec3 throughput = path.throughput;
+  forgetAddresses();
+  take(path);
+  path.throughput = throughput;
+  bool arrives = !collided && tries < 64u;
+  if (!arrives) path.origin += t * path.direction;
+  if (!arrives && !collided) {
+    path.travelled += t;
+    path.head = 0.0;
+    ++path.event;
+  }
+  return arrives ? kFlightArrives : kScattered;
 }
 #endif
 
@@ -457,6 +501,8 @@ bool walk(inout Path path, MediumRecord medium, inout float flight, PathNumbers 
     if (!(flight + margin < radius - length(path.origin - interior.min - (vec3(cell) + 0.5) * interior.cell)))
       return true;
     ++loopTurns;
+    numbers.pixel += hiddenZero();
+    numbers.sampleIndex += hiddenZero();
     weighFlight(path, medium, channelProbabilities(path.throughput), path.head + flight, false, numbers);
     path.origin += flight * path.direction;
     if (scatterInMedium(path, medium, numbers, false) != kScattered) return false;
@@ -474,18 +520,18 @@ float flownDistance(Path path, Hit hit, float flight) {
 }
 
 // Handles what happens on the way to `hit`, the first hit within `flight`.
-int crossMedium(inout Path path, MediumRecord medium, float flight, Hit hit, PathNumbers numbers) {
+int crossMedium(inout Path path, int index, float flight, Hit hit, PathNumbers numbers) {
   vec3 inward = vec3(0.0);
 #if HETEROGENEOUS
-  if (medium.grid >= 0) {
+  if (mediumAt(index).grid >= 0) {
     bool collided;
-    int became = trackDensity(path, medium, hit.triangle != kNoHit ? hit.t : kFar, numbers, collided);
+    int became = trackDensity(path, mediumAt(index), hit.triangle != kNoHit ? hit.t : kFar, numbers, collided);
     if (!collided) return became;
   } else
 #endif
   {
     bool arrives = arrivesAt(hit, flight);
-    weighFlight(path, medium, channelProbabilities(path.throughput), flownDistance(path, hit, flight), arrives,
+    weighFlight(path, mediumAt(index), channelProbabilities(path.throughput), flownDistance(path, hit, flight), arrives,
                 numbers);
     if (arrives) return kFlightArrives;
     // Nearer to a face than a gap, the path continues from a gap beside it. The piece of flight along the face's normal
@@ -507,7 +553,7 @@ int crossMedium(inout Path path, MediumRecord medium, float flight, Hit hit, Pat
       }
     }
   }
-  int became = scatterInMedium(path, medium, numbers, lampsReach(path));
+  int became = scatterInMedium(path, mediumAt(index), numbers, lampsReach(path));
 #if !FIXED_EPSILON  // published rays have no such correction
   float shift = length(inward);
   if (shift > 0.0) {

@@ -173,9 +173,15 @@ void advanceRay(inout BvhTraversal s, bool any) {
   ivec3 low03 = ivec3(n2.x, n2.z, n3.x), low47 = ivec3(n2.y, n2.w, n3.y), high03 = ivec3(n3.z, n4.x, n4.z),
         high47 = ivec3(n3.w, n4.y, n4.w);
   uint hits = bvhHitFour(bvhChoose(low03, high03, s.ray.negative), bvhChoose(high03, low03, s.ray.negative), scale,
-                         base - error, base + error, s.tMin, s.hit.t, n1.z, s.ray.octant) |
-              bvhHitFour(bvhChoose(low47, high47, s.ray.negative), bvhChoose(high47, low47, s.ray.negative), scale,
-                         base - error, base + error, s.tMin, s.hit.t, n1.w, s.ray.octant);
+                         base - error, base + error, s.tMin, s.hit.t, n1.z, s.ray.octant);
+#if SHARED_STACK
+  // Adds 0: eight inner nodes leave no child for triangles. It keeps compilers from unpacking all 48 bytes at once.
+  int none = hits == 0xffffffffu ? 1 : 0;
+  low47 += none;
+  high47 += none;
+#endif
+  hits |= bvhHitFour(bvhChoose(low47, high47, s.ray.negative), bvhChoose(high47, low47, s.ray.negative), scale,
+                     base - error, base + error, s.tMin, s.hit.t, n1.w, s.ray.octant);
   s.siblings = uvec2(n1.x, (hits & 0xff000000u) | (n0.w >> 24));
   uint leaves = hits & 0x00ffffffu;  // triangles to test, counted from the node's first
   while (leaves != 0u) {
@@ -218,10 +224,41 @@ Hit finishRay(BvhTraversal s, vec3 direction) {
   float scale = inversePowerOfTwo(max(largestOf(b - a), largestOf(c - a))),
         directionScale = inversePowerOfTwo(largestOf(direction));
   a *= scale, b *= scale, c *= scale;
-  Pairs e1 = pairsDifference(b, a), e2 = pairsDifference(c, a), corner = pairsDifference(a, s.ray.origin * scale),
-        d = Pairs(direction * directionScale, vec3(0.0));
-  Pairs n = pairsCross(e1, e2), m = pairsCross(d, corner);
-  vec2 along = pairsDot(n, d), distance = pairsDot(n, corner), v = pairsDot(e2, m), w = pairsDot(e1, m);
+  Pairs e1 = pairsDifference(b, a), e2 = pairsDifference(c, a), corner = pairsDifference(a, s.ray.origin * scale);
+  vec3 d = direction * directionScale;
+#if SHARED_STACK
+  // Component after component: a third fewer registers than all at once.
+  vec4 sum = vec4(0.0), error = vec4(0.0), low = vec4(0.0);
+  for (int axis = met ? 0 : 3; axis < 3; ++axis) {
+    PairOfPairs p = pairsProduct(PairOfPairs(vec2(e1.hi.y, d.y), vec2(e1.lo.y, 0.0)),
+                                 PairOfPairs(vec2(e2.hi.z, corner.hi.z), vec2(e2.lo.z, corner.lo.z))),
+                q = pairsProduct(PairOfPairs(vec2(e1.hi.z, d.z), vec2(e1.lo.z, 0.0)),
+                                 PairOfPairs(vec2(e2.hi.y, corner.hi.y), vec2(e2.lo.y, corner.lo.y))),
+                nm = pairsDifference(p, q);
+    p = pairsProduct(PairOfPairs(nm.hi.xx, nm.lo.xx), PairOfPairs(vec2(d.x, corner.hi.x), vec2(0.0, corner.lo.x)));
+    q = pairsProduct(PairOfPairs(nm.hi.yy, nm.lo.yy), PairOfPairs(vec2(e2.hi.x, e1.hi.x), vec2(e2.lo.x, e1.lo.x)));
+    vec4 term = vec4(p.hi, q.hi);
+    precise vec4 next = sum + term;
+    precise vec4 back = next - sum;
+    precise vec4 lost = error + ((sum - (next - back)) + (term - back));
+    precise vec4 lows = low + vec4(p.lo, q.lo);
+    sum = next;
+    error = lost;
+    low = lows;
+    e1 = Pairs(e1.hi.yzx, e1.lo.yzx);
+    e2 = Pairs(e2.hi.yzx, e2.lo.yzx);
+    corner = Pairs(corner.hi.yzx, corner.lo.yzx);
+    d = d.yzx;
+  }
+  precise vec4 rest = error + low;
+  precise vec4 hi = sum + rest;
+  precise vec4 lo = rest - (hi - sum);
+  vec2 along = vec2(hi.x, lo.x), distance = vec2(hi.y, lo.y), v = vec2(hi.z, lo.z), w = vec2(hi.w, lo.w);
+#else
+  Pairs n = pairsCross(e1, e2), m = pairsCross(Pairs(d, vec3(0.0)), corner);
+  vec2 along = pairsDot(n, Pairs(d, vec3(0.0))), distance = pairsDot(n, corner), v = pairsDot(e2, m),
+       w = pairsDot(e1, m);
+#endif
   Hit hit = s.hit;
   if (along.x != 0.0) {
     vec3 ratios = pairsOver(Pairs(vec3(distance.x, -v.x, w.x), vec3(distance.y, -v.y, w.y)), along);

@@ -22,11 +22,8 @@ bool sampleLight(vec3 position, vec2 xi, uvec4 words, out LightSample light) {
   if (unitFloat(words.y) >= lights[i].threshold) i = lights[i].alias;
   PathLight source = lights[i];
   pickedLight = i;
-  light.infinite = false;
-  light.pdf = 0.0;
-  light.end = source.a;
-  vec3 away = source.a - position;
-  float distance2 = dot(away, away);
+  light = LightSample(vec3(0.0), 0.0, vec3(0.0), source.a, false);
+  bool reaches = false;
 #if EMISSION
   if (source.kind == PATH_LIGHT_TRIANGLE) {
     vec2 w = triangleSample(xi);
@@ -34,17 +31,18 @@ bool sampleLight(vec3 position, vec2 xi, uvec4 words, out LightSample light) {
     vec3 normal = cross(source.b, source.c);
     float twiceArea = length(normal);
     normal /= twiceArea;
-    away = p - position;
-    distance2 = dot(away, away);
+    vec3 away = p - position;
+    float distance2 = dot(away, away);
     light.direction = away * inversesqrt(distance2);
     float cosine = dot(light.direction, normal);
-    if (!(abs(cosine) > 0.0 && distance2 > 0.0)) return false;
-    float area = 0.5 * twiceArea / source.probability;  // over the density per area
-    light.pdf = distance2 / (abs(cosine) * area);
-    light.value = emissionAt(source.q, source.p, w) / light.pdf;
-    vec3 largest = max(abs(source.a), max(abs(source.a + source.b), abs(source.a + source.c)));
-    light.end = offsetRay(p, cosine < 0.0 ? normal : -normal, max(largest.x, max(largest.y, largest.z)));
-    return true;
+    reaches = abs(cosine) > 0.0 && distance2 > 0.0;
+    if (reaches) {
+      float area = 0.5 * twiceArea / source.probability;  // over the density per area
+      light.pdf = distance2 / (abs(cosine) * area);
+      light.value = emissionAt(source.q, source.p, w) / light.pdf;
+      vec3 largest = max(abs(source.a), max(abs(source.a + source.b), abs(source.a + source.c)));
+      light.end = offsetRay(p, cosine < 0.0 ? normal : -normal, max(largest.x, max(largest.y, largest.z)));
+    }
   }
 #endif
 #if ENVIRONMENT_PICTURE
@@ -54,7 +52,7 @@ bool sampleLight(vec3 position, vec2 xi, uvec4 words, out LightSample light) {
     light.infinite = true;
     light.pdf *= source.probability;
     light.value = radiance / light.pdf;
-    return light.pdf > 0.0;
+    reaches = light.pdf > 0.0;
   }
 #endif
 #if SUN
@@ -62,17 +60,25 @@ bool sampleLight(vec3 position, vec2 xi, uvec4 words, out LightSample light) {
     light.direction = -source.b;
     light.infinite = true;
     light.value = source.c / source.probability;
-    return true;
+    reaches = true;
   }
 #endif
 #if SPOTS || POINTS
-  if (!(distance2 > 0.0)) return false;
-  light.direction = away * inversesqrt(distance2);
-  light.value = source.c / (source.probability * distance2);
-#endif
+  if (source.kind == PATH_LIGHT_POINT || source.kind == PATH_LIGHT_SPOT) {
+    vec3 away = source.a - position;
+    float distance2 = dot(away, away);
+    reaches = distance2 > 0.0;
+    if (reaches) {
+      light.direction = away * inversesqrt(distance2);
+      light.value = source.c / (source.probability * distance2);
 #if SPOTS
-  if (source.kind == PATH_LIGHT_SPOT)
-    light.value *= spotFalloff(-dot(light.direction, source.b), uintBitsToFloat(source.p), uintBitsToFloat(source.q));
+      if (source.kind == PATH_LIGHT_SPOT)
+        light.value *=
+            spotFalloff(-dot(light.direction, source.b), uintBitsToFloat(source.p), uintBitsToFloat(source.q));
 #endif
-  return any(greaterThan(light.value, vec3(0.0)));
+      reaches = any(greaterThan(light.value, vec3(0.0)));
+    }
+  }
+#endif
+  return reaches;
 }

@@ -93,25 +93,75 @@ TEST_F(PathWalkTest, WalksAreThePathsThatTraceEveryFlight) {
   EXPECT_EQ(walking.statistics().leakedPaths, 0.0);
 }
 
+/// Lamps, a grid of smoke and rough metal and glass, beside each other.
+Scene smokyRoom() {
+  Scene scene;
+  Medium smoke = homogeneous({0.2, 0.3, 0.4}, {0.8, 0.6, 0.4}, 0.3);
+  DensityGrid grid;
+  grid.size = {8, 8, 8};
+  grid.min = {-1.0, -0.5, -1.0};
+  grid.max = {0.0, 0.5, 1.0};
+  for (int i = 0; i < 512; ++i) grid.density.push_back(static_cast<float>(i % 7));
+  smoke.grid = grid;
+  scene.media = {smoke};
+  addBox(scene, grid.min, grid.max, addBoundary(scene, Bsdf::none, 1.0, 0));
+  Material metal;
+  metal.bsdf = Bsdf::conductor;
+  metal.specular = {0.9f, 0.7f, 0.5f};
+  metal.roughness = 0.3f;
+  scene.materials.push_back(metal);
+  addSphere(scene, {0.6, 0.0, 0.5}, 0.3, 2, static_cast<int>(scene.materials.size()) - 1);
+  const int glass = addBoundary(scene, Bsdf::dielectric, 1.5, -1);
+  scene.materials[static_cast<std::size_t>(glass)].roughness = 0.2f;
+  addSphere(scene, {0.6, 0.0, -0.5}, 0.3, 2, glass);
+  scene.materials.emplace_back().emission = glm::vec3(5.0f);
+  addBox(scene, {-0.2, 1.5, -0.2}, {0.2, 1.6, 0.2}, static_cast<int>(scene.materials.size()) - 1);
+  scene.environment = halves();
+  scene.cameras = {cameraAt({0.3, 0.4, 4.0}, glm::dvec3(0.0), 0.6)};
+  return scene;
+}
+
 TEST_F(PathWalkTest, TheKernelForGpusDrawsTheSamePicture) {
-  // Stack in shared memory, shadow rays in the same loop as the path's: bit by bit what software renderers get.
+  // Stack in shared memory, the path in the state buffer while a ray is traced, shadow rays in the same loop as the
+  // path's: bit by bit what software renderers get. The picture is no multiple of a group.
   Scene milk = milkBall(1.33);
   addSphere(milk, glm::dvec3(0.0), 1.2, 3, addBoundary(milk, Bsdf::dielectric, 1.5, -1, -1));
   Scene room;
   room.environment = milk.environment;
   room.cameras = milk.cameras;
-  for (Scene* scene : {&milk, &room}) {
+  Scene smoke = smokyRoom();
+  for (Scene* scene : {&milk, &room, &smoke}) {
     scene->materials.emplace_back().diffuse = glm::vec3(0.5f);
     addBox(*scene, glm::dvec3(-1.0), glm::dvec3(0.2), static_cast<int>(scene->materials.size()) - 1);
     scene->points.push_back({{0.0, 3.0, 3.0}, glm::vec3(9.0f)});
     PathTracer::Settings settings;
-    settings.size = {24, 24};
+    settings.size = {27, 21};
     settings.rays.sharedStack = false;
     const Image software = picture(*scene, 8, settings);
     settings.rays.sharedStack = true;
     settings.submissionSeconds = 0.001;
     EXPECT_EQ(picture(*scene, 8, settings).pixels, software.pixels);
     EXPECT_GT(software.at(12, 12).x, 0.0f);
+  }
+}
+
+TEST_F(PathWalkTest, TheKernelForGpusTellsTheSameLightsOfAPixel) {
+  const Scene scene = smokyRoom();
+  PathTracer::Settings settings;
+  settings.size = {24, 24};
+  settings.askedPixel = glm::ivec2(12, 12);
+  std::vector<std::vector<PathTracer::AskedLight>> told;
+  for (const bool shared : {false, true}) {
+    settings.rays.sharedStack = shared;
+    PathTracer tracer(context(), library(), scene, settings);
+    tracer.record(16);
+    told.push_back(tracer.takeAsked());
+  }
+  ASSERT_EQ(told[0].size(), told[1].size());
+  EXPECT_GT(told[0].size(), 8u);
+  for (std::size_t i = 0; i < told[0].size(); ++i) {
+    EXPECT_EQ(told[0][i].radiance, told[1][i].radiance) << i;
+    EXPECT_EQ(told[0][i].places, told[1][i].places) << i;
   }
 }
 

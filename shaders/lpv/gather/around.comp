@@ -150,12 +150,14 @@ void main() {
   found[lane] = own;
   barrier();
   if (lane != 0u) return;
+  // Groups lie in one row. A compiler that knew the number of lanes would load all of `found` into registers at once.
+  int lanes = LPV_LANES * int(gl_NumWorkGroups.y);
   vec3 sum = vec3(0.0);
-  for (int i = 0; i < LPV_LANES; ++i) sum += found[i];
+  for (int i = 0; i < lanes; ++i) sum += found[i];
   sum /= float(LPV_LANES * RAYS);
 #if LINKS
   uint surfaces = 0u, near = 0u;
-  for (int i = 0; i < LPV_LANES; ++i) {
+  for (int i = 0; i < lanes; ++i) {
     surfaces += min(met[i], 1u);
     near += met[i] / 2u;
   }
