@@ -464,6 +464,7 @@ void main() {
       parkBesides();
     } else
 #endif
+    // A shadow ray may go on behind what it met.
     if (job == kShadowRay) {
       takeShadow();
 #if INTERIORS

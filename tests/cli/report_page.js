@@ -13,7 +13,7 @@ const json = Array.isArray(written.error) ? written.error[0] : written;
 const profile = fs.mkdtempSync(path.join(os.tmpdir(), 'lucerna-page-'));
 const flags = ['--headless', '--no-sandbox', '--disable-gpu', '--hide-scrollbars', `--user-data-dir=${profile}`,
                '--remote-debugging-pipe', '--window-size=1280,1000', 'about:blank'];
-const browser = spawn(chromium, flags, {stdio: ['ignore', 'ignore', 'ignore', 'pipe', 'pipe']});
+const browser = spawn(chromium, flags, {stdio: ['ignore', 'ignore', 'ignore', 'pipe', 'pipe'], detached: true});
 let next = 1, buffer = '';
 const waiting = new Map(), events = [];
 browser.stdio[4].on('data', data => {
@@ -746,9 +746,13 @@ async function main() {
 }
 main().catch(error => { console.log('FAULT ' + error.stack); faults = 1; }).finally(() => {
   browser.on('exit', () => {
-    // Its other processes may still write there.
-    fs.rmSync(profile, {recursive: true, force: true, maxRetries: 20, retryDelay: 100});
+    // Its other processes may still write there: what stays behind is no fault of the page.
+    try {
+      fs.rmSync(profile, {recursive: true, force: true, maxRetries: 20, retryDelay: 100});
+    } catch (error) {
+      console.log('left behind: ' + error.message);
+    }
     process.exit(faults ? 1 : 0);
   });
-  browser.kill('SIGKILL');
+  process.kill(-browser.pid, 'SIGKILL');  // with its other processes
 });

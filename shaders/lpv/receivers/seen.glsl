@@ -1,5 +1,5 @@
-// The surface that a pixel of the camera sees, in the ray caster's coordinates. Needs rays/bvh.glsl, rays/materials.glsl
-// and the path constants.
+// The surface that a pixel of the camera sees, in the ray caster's coordinates. Needs rays/bvh.glsl,
+// rays/materials.glsl and the path constants.
 bool seenAt(int pixel, out Hit hit, out Surface surface) {
   int width = tracer.picture.x;
   vec2 place = vec2(pixel % width, pixel / width) + 0.5;
