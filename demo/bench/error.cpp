@@ -25,10 +25,14 @@ namespace {
 /// radiosity ladder would take hours on two cores.
 constexpr std::size_t kMostTrianglesOfRadiosity = 30000;
 
+/// Pictures that are asked for stand alone, unless techniques are named too.
+bool hasLadders(const ErrorBenchOptions& options) {
+  return !options.techniques.empty() || !(options.floors || !options.rungs.empty());
+}
+
 /// Ladders for which a scene is too large, one line each; only if none was requested by name.
 std::vector<std::string> leftOutOf(const ErrorBenchOptions& options, const Scene& scene) {
-  if (!options.techniques.empty() || options.floors || !options.rungs.empty() ||
-      scene.triangleCount() <= kMostTrianglesOfRadiosity)
+  if (!options.techniques.empty() || !hasLadders(options) || scene.triangleCount() <= kMostTrianglesOfRadiosity)
     return {};
   return {fmt::format(
       "radiosity: left out but for its row as published, which has a coarser model; {} triangles, each at least one "
@@ -37,7 +41,7 @@ std::vector<std::string> leftOutOf(const ErrorBenchOptions& options, const Scene
 }
 
 std::vector<std::string> chosenTechniques(const ErrorBenchOptions& options) {
-  if (options.techniques.empty() && (options.floors || !options.rungs.empty())) return {};
+  if (!hasLadders(options)) return {};
   std::vector<std::string> known = ladderTechniques();
   known.emplace_back("path");
   if (options.techniques.empty()) return known;
