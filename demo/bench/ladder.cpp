@@ -74,6 +74,11 @@ std::vector<Rung> lpvLadder(bool shrink) {
     if (!shrink || samples < 1024) rays("samples", fmt::format("lpv.samples={}", samples));
   for (int cells : {16, 32, 64})
     if (!shrink || cells < 64) rays("cells", fmt::format("lpv.cells={}", cells));
+  // The least that receivers cost: one cascade and few paths.
+  for (int cells : {8, 16, 32})
+    rungs.push_back(rung("lpv", "rays coarse",
+                         {"lpv.transport=rays", "lpv.bounces=all", "lpv.samples=16", "lpv.cascades=1",
+                          fmt::format("lpv.cells={}", cells)}));
   // Each cascade more halves the finest cells.
   for (int cascades : {2, 3, 4})
     if (!shrink)

@@ -47,6 +47,7 @@ GpuScene::GpuScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabi
                         gl::Wrap::repeat};
   // Without mipmaps a software renderer reads every texel below a pixel, thousands where the picture is small.
   const bool anisotropic = capabilities.anisotropicFilter && settings.mipmaps;
+  if (anisotropic && settings.anisotropy > 1.0f && needs.diffuseTextures) isotropic_.emplace("isotropic", sampling);
   sampling.anisotropy = anisotropic ? std::min(settings.anisotropy, capabilities.maxAnisotropy) : 1.0f;
 
   struct Use {
@@ -173,6 +174,8 @@ void GpuScene::drawRange(const Draw& draw) const { gl::drawIndexedTriangles(draw
 
 void GpuScene::draw(const SurfacePrograms& programs, const View& view) const {
   vertexArray_.bind();
+  const bool isotropic = !view.anisotropic && isotropic_;
+  if (isotropic) isotropic_->bind(UNIT_DIFFUSE);
   for (const bool masked : {false, true}) {
     const std::vector<Draw>& all = masked ? masked_ : opaque_;
     if (all.empty()) continue;
@@ -196,6 +199,7 @@ void GpuScene::draw(const SurfacePrograms& programs, const View& view) const {
       drawRange(*draw);
     }
   }
+  if (isotropic) gl::Sampler::unbind(UNIT_DIFFUSE);
 }
 
 void GpuScene::drawDepth(const SurfacePrograms& programs) const {

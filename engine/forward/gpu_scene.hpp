@@ -37,6 +37,7 @@ class GpuScene {
   struct View {
     const glm::mat4* clipFromWorld = nullptr;
     const glm::vec3* viewPoint = nullptr;
+    bool anisotropic = true;  ///< filter colours as the settings say; false: what is drawn is not looked at
   };
   void draw(const SurfacePrograms& programs, const View& view) const;
   /// Only positions for opaque meshes, in one call; masked meshes with their masks.
@@ -69,6 +70,7 @@ class GpuScene {
   gl::VertexArray vertexArray_;
   std::vector<gl::Texture> textures_;
   std::optional<gl::Texture> white_;
+  std::optional<gl::Sampler> isotropic_;  ///< if textures are filtered anisotropically
   std::vector<Surface> surfaces_;
   std::vector<Draw> opaque_, masked_;
   std::uint32_t opaqueIndexCount_ = 0;  ///< opaque meshes come first in the index buffer

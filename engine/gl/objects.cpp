@@ -71,6 +71,7 @@ void deleteBuffer(GLuint id) { glDeleteBuffers(1, &id); }
 void deleteTexture(GLuint id) { glDeleteTextures(1, &id); }
 void deleteFramebuffer(GLuint id) { glDeleteFramebuffers(1, &id); }
 void deleteVertexArray(GLuint id) { glDeleteVertexArrays(1, &id); }
+void deleteSampler(GLuint id) { glDeleteSamplers(1, &id); }
 }  // namespace detail
 
 // ---------------------------------------------------------------------------------------------------- Buffer
@@ -131,6 +132,44 @@ void Buffer::readBytes(void* data, std::size_t bytes) const {
   throwIfError("a buffer was read back");
 }
 
+// ---------------------------------------------------------------------------------------------------- Sampler
+
+namespace {
+
+/// To a texture's target or a sampler: their functions have the same types.
+void applySampling(const Sampling& s, GLuint to, void(GLAPIENTRY* integer)(GLuint, GLenum, GLint),
+                   void(GLAPIENTRY* number)(GLuint, GLenum, GLfloat),
+                   void(GLAPIENTRY* numbers)(GLuint, GLenum, const GLfloat*)) {
+  const auto parameter = [&](GLenum key, GLenum value) { integer(to, key, static_cast<GLint>(value)); };
+  parameter(GL_TEXTURE_MIN_FILTER, raw(s.minFilter));
+  parameter(GL_TEXTURE_MAG_FILTER, raw(s.magFilter));
+  parameter(GL_TEXTURE_WRAP_S, raw(s.wrap));
+  parameter(GL_TEXTURE_WRAP_T, raw(s.wrap));
+  parameter(GL_TEXTURE_WRAP_R, raw(s.wrap));
+  numbers(to, GL_TEXTURE_BORDER_COLOR, &s.border.x);
+  if (s.anisotropy > 1.0f) number(to, GL_TEXTURE_MAX_ANISOTROPY_EXT, s.anisotropy);
+  if (s.depthCompare) {
+    parameter(GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+    parameter(GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
+  }
+}
+
+}  // namespace
+
+Sampler::Sampler(const std::string& name, const Sampling& sampling) {
+  GLuint id = 0;
+  glGenSamplers(1, &id);
+  handle_ = decltype(handle_)(id);
+  glBindSampler(kEditUnit, id);  // creates it, so that it can have a label
+  glBindSampler(kEditUnit, 0);
+  label(GL_SAMPLER, id, name);
+  applySampling(sampling, id, glSamplerParameteri, glSamplerParameterf, glSamplerParameterfv);
+}
+
+void Sampler::bind(GLuint unit) const { glBindSampler(unit, handle_.id()); }
+
+void Sampler::unbind(GLuint unit) { glBindSampler(unit, 0); }
+
 // ---------------------------------------------------------------------------------------------------- Texture
 
 Texture::Texture(const std::string& name, Format format, glm::ivec2 size, const Sampling& sampling, int levels)
@@ -161,18 +200,7 @@ void Texture::create(const std::string& name, const Sampling& s) {
   if (target() == GL_TEXTURE_2D) glTexStorage2D(target(), levels_, raw(format_), size_.x, size_.y);
   else glTexStorage3D(target(), levels_, raw(format_), size_.x, size_.y, size_.z);
   throwIfNotAllocated(name, bytes());
-  const auto parameter = [&](GLenum key, GLenum value) { glTexParameteri(target(), key, static_cast<GLint>(value)); };
-  parameter(GL_TEXTURE_MIN_FILTER, raw(s.minFilter));
-  parameter(GL_TEXTURE_MAG_FILTER, raw(s.magFilter));
-  parameter(GL_TEXTURE_WRAP_S, raw(s.wrap));
-  parameter(GL_TEXTURE_WRAP_T, raw(s.wrap));
-  parameter(GL_TEXTURE_WRAP_R, raw(s.wrap));
-  glTexParameterfv(target(), GL_TEXTURE_BORDER_COLOR, &s.border.x);
-  if (s.anisotropy > 1.0f) glTexParameterf(target(), GL_TEXTURE_MAX_ANISOTROPY_EXT, s.anisotropy);
-  if (s.depthCompare) {
-    parameter(GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
-    parameter(GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
-  }
+  applySampling(s, target(), glTexParameteri, glTexParameterf, glTexParameterfv);
 }
 
 glm::ivec3 Texture::levelSize(int level) const {

@@ -24,6 +24,7 @@ void deleteBuffer(GLuint id);
 void deleteTexture(GLuint id);
 void deleteFramebuffer(GLuint id);
 void deleteVertexArray(GLuint id);
+void deleteSampler(GLuint id);
 }  // namespace detail
 
 /// Names the object for debuggers, truncated to GL_MAX_LABEL_LENGTH: longer labels are an error [OpenGL 4.3, 20.9].
@@ -105,6 +106,17 @@ struct Sampling {
   glm::vec4 border{0.0f};
   float anisotropy = 1.0f;
   bool depthCompare = false;  ///< sampler2DShadow, less or equal
+};
+
+/// While bound, replaces how the texture of a unit is read.
+class Sampler {
+ public:
+  Sampler(const std::string& name, const Sampling& sampling);
+  void bind(GLuint unit) const;
+  static void unbind(GLuint unit);
+
+ private:
+  Handle<detail::deleteSampler> handle_;
 };
 
 /// Immutable storage, 2D, 2D array or 3D.

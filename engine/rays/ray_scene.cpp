@@ -52,7 +52,7 @@ void RayScene::upload(const Scene& scene, const Bvh& bvh) {
 
 int RayScene::sharedStack() const {
   if (!sharedStack_) return 0;
-  return settings_.moves ? BVH_MAX_DEPTH : std::min((std::max(statistics_.depth, 1) + 3) / 4 * 4, BVH_MAX_DEPTH);
+  return settings_.moves ? BVH_MAX_DEPTH : std::min((std::max(statistics_.depth, 1) + 1) / 2 * 2, BVH_MAX_DEPTH);
 }
 
 void RayScene::bind() const {

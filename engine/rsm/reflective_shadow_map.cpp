@@ -57,7 +57,7 @@ void ReflectiveShadowMap::draw(const GpuScene& scene, bool depthClamp) {
   const gl::RasterPass pass(kNames[static_cast<std::size_t>(light_)], framebuffer_, state);
   for (int attachment = 0; attachment < (albedo() ? 4 : 3); ++attachment) pass.clearColor(attachment, glm::vec4(0.0f));
   pass.clearDepth();
-  scene.draw(programs_, {});
+  scene.draw(programs_, {nullptr, nullptr, false});
 }
 
 ReflectiveShadowMap::Outputs ReflectiveShadowMap::record(const GpuScene& scene, double texelArea) {

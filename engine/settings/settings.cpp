@@ -328,7 +328,7 @@ const std::vector<Setting>& table() {
       {"shadow.point-size", number(FIELD(lights.pointSize), 1, 16384), "texels",
        "side of each face of an omnidirectional light's shadow map", "", rebuild, kShadowed, ""},
       {"texture.anisotropy", number(FIELD(textures.anisotropy), 1.0, 16.0), "",
-       "anisotropic filtering, at most; 1 without mipmaps", "", rebuild, kTextured, ""},
+       "anisotropic filtering of what is seen, at most; 1 without mipmaps", "", rebuild, kTextured, ""},
       {"texture.mipmaps", boolean(FIELD(textures.mipmaps)), "",
        "textures in smaller versions with distance; off: they flicker", "[LPV2015]", rebuild, kTextured, ""},
       {"frame.reuse", boolean(FIELD(reuse)), "",

@@ -759,6 +759,12 @@ class LpvReceiversAgainstPaths : public LpvReceiversGl {
     reference.noise = relativeError(noisy, reference.mean);
     return reference;
   }
+  /// Of all bounces in the Cornell box, traced once for all tests.
+  static const Reference& cornellIndirect(const Scene& scene) {
+    static const Reference reference =
+        traced(scene, scene.cameras.front(), Transport::indirect, PathTracer::kUnlimited);
+    return reference;
+  }
   /// The picture's mean within `ofMean`, and its error beyond the reference's noise within `beyondNoise`.
   static void expectNear(const Image& seen, const Reference& reference, double ofMean, double beyondNoise,
                          const std::string& what) {
@@ -791,7 +797,8 @@ TEST_F(LpvReceiversAgainstPaths, CornellBox) {
     RenderSettings s = settings(row.bounces, 512, row.component);
     s.lpv.cascades.cells = 32;
     s.lpv.cascades.cascades = 3;
-    const Reference reference = traced(scene, camera, row.transport, row.scatterings);
+    const bool all = row.transport == Transport::indirect && row.scatterings == PathTracer::kUnlimited;
+    const Reference reference = all ? cornellIndirect(scene) : traced(scene, camera, row.transport, row.scatterings);
     for (const LpvTransport transport : {LpvTransport::rays, LpvTransport::gather}) {
       // Gathered, 1 % of a bounce is lost where nodes of the map are not opened, 2 % of all.
       if (transport == LpvTransport::gather && row.bounces == 2) continue;
@@ -807,7 +814,7 @@ TEST_F(LpvReceiversAgainstPaths, CornellBox) {
 TEST_F(LpvReceiversAgainstPaths, MoreIsBetterWhereLightIsGathered) {
   const Scene scene = loadScene(LUCERNA_SOURCE_DIR "/assets/cornell/cornell.json");
   const Camera camera = scene.cameras.front();
-  const Reference reference = traced(scene, camera, Transport::indirect, PathTracer::kUnlimited);
+  const Reference& reference = cornellIndirect(scene);
   const auto error = [&](int bounces, int cells, int map, int points) {
     RenderSettings s = settings(bounces, 1, Component::indirect);
     s.lpv.transport = LpvTransport::gather;
