@@ -6,6 +6,7 @@
 #include "forward/sun_frustum.hpp"
 #include "lpv/light_propagation_volume.hpp"
 #include "rsm/reflective_shadow_map.hpp"
+#include "shared/bindings.h"
 #include "shared/frame.h"
 
 #include <cmath>
@@ -27,9 +28,9 @@ class ReflectiveShadowMapGl : public test::SharedProgramsTest {
         0.0};  ///< of a volume of one cascade that holds the scene: band 0 * sqrt(4 pi) * E_ref * s^2
     std::size_t covered = 0;
   };
-  static Drawn draw(const Scene& scene, int size) {
+  static Drawn draw(const Scene& scene, int size, const GpuSceneSettings& textures = {}) {
     const SceneNeeds needs = analyse(scene);
-    const GpuScene gpuScene(scene, needs, capabilities());
+    const GpuScene gpuScene(scene, needs, capabilities(), textures);
     ReflectiveShadowMap rsm(library(), gpuScene, {size});
     EXPECT_EQ(rsm.size(), size);
     const SunFrustum frustum = fitSunFrustum(scene, scene.sun->direction);
@@ -191,6 +192,29 @@ TEST_F(ReflectiveShadowMapGl, AlbedoTextureScalesTheFlux) {
   EXPECT_NEAR(area, 4.0, 0.1);
   EXPECT_NEAR(drawn.totalFlux.x / area, 0.5 * static_cast<double>(linearFromSrgb(188.0f / 255.0f)), 2e-3);
   EXPECT_EQ(drawn.totalFlux.z, 0.0);
+}
+
+// A texel of the map is averaged with others, so anisotropic filters would be wasted on it. What is drawn later has
+// them again.
+TEST_F(ReflectiveShadowMapGl, ColoursAreReadIsotropically) {
+  SceneBuilder builder;
+  std::vector<std::uint8_t> rgba;
+  for (int i = 0; i < 64 * 64; ++i) {
+    const auto shade = static_cast<std::uint8_t>((i * 37 + i / 64 * 11) % 256);
+    rgba.insert(rgba.end(), {shade, shade, shade, 255});
+  }
+  const int material = builder.material(glm::vec3(1.0f));
+  builder.materialAt(material).diffuseTexture = builder.texture(64, 64, rgba);
+  builder.plate({0, 0, 0}, {0, 0, 2}, {2, 0, 0}, material);
+  Scene scene = builder.scene();
+  scene.sun = DirectionalLight{glm::normalize(glm::dvec3(0.95, -0.3, 0.1)), glm::vec3(1.0f)};
+  const Drawn four = draw(scene, 32, {.anisotropy = 4.0f}), one = draw(scene, 32, {.anisotropy = 1.0f});
+  EXPECT_GT(four.covered, 100u);
+  EXPECT_EQ(four.flux, one.flux);
+  GLint sampler = -1;
+  glActiveTexture(GL_TEXTURE0 + UNIT_DIFFUSE);
+  glGetIntegerv(GL_SAMPLER_BINDING, &sampler);
+  EXPECT_EQ(sampler, 0);
 }
 
 }  // namespace
