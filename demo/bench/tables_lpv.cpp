@@ -227,7 +227,7 @@ class Bench {
     std::map<int, ReflectiveShadowMap::Outputs> outputs;
     for (auto& [size, map] : maps_) {
       const gl::TimeQuery::Scope stage(timer_, rsmStage(size));
-      outputs.emplace(size, map.record(gpuScene_, sunFrustum_.texelArea(size)));
+      outputs.emplace(size, map.record(gpuScene_, sunFrustum_));
     }
     const glm::vec3 sun = input_.scene.sun->irradiance;
     const Camera& camera = input_.scene.cameras.front();

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <map>
 
 namespace lucerna {
@@ -27,6 +28,9 @@ std::vector<std::uint8_t> flippedRows(const Bitmap& bitmap) {
   return flipped;
 }
 
+constexpr std::array<gl::VertexArray::Attribute, 3> kAttributes{
+    {{0, 3, offsetof(Vertex, position)}, {1, 2, offsetof(Vertex, texCoord)}, {2, 3, offsetof(Vertex, normal)}}};
+
 bool outsideFrustum(const glm::mat4& clipFromWorld, const glm::vec3& centre, const glm::vec3& halfExtent) {
   const glm::mat4 rows = glm::transpose(clipFromWorld);
   for (int axis = 0; axis < 3; ++axis)
@@ -42,7 +46,7 @@ bool outsideFrustum(const glm::mat4& clipFromWorld, const glm::vec3& centre, con
 
 GpuScene::GpuScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabilities& capabilities,
                    const GpuSceneSettings& settings)
-    : scene_(&scene), needs_(needs) {
+    : scene_(&scene), needs_(needs), isSoftware_(capabilities.softwareRenderer) {
   gl::Sampling sampling{settings.mipmaps ? gl::Filter::linearMipmaps : gl::Filter::linear, gl::Filter::linear,
                         gl::Wrap::repeat};
   // Without mipmaps a software renderer reads every texel below a pixel, thousands where the picture is small.
@@ -120,8 +124,9 @@ GpuScene::GpuScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabi
   std::vector<std::uint32_t> indices;
   indices.reserve(scene.indices.size());
   for (const Mesh* mesh : order) {
-    const Draw draw{static_cast<std::uint32_t>(indices.size()), mesh->indexCount, mesh->material,
-                    glm::vec3(mesh->bounds.centre()), glm::vec3(0.5 * mesh->bounds.extent())};
+    const Draw draw{
+        static_cast<std::uint32_t>(indices.size()), mesh->indexCount, mesh->material, glm::vec3(mesh->bounds.centre()),
+        glm::vec3(0.5 * mesh->bounds.extent()),     mesh->firstIndex};
     const auto first = scene.indices.begin() + mesh->firstIndex;
     indices.insert(indices.end(), first, first + mesh->indexCount);
     (isMasked(mesh) ? masked_ : opaque_).push_back(draw);
@@ -133,9 +138,7 @@ GpuScene::GpuScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabi
                          gl::Usage::staticDraw);
   if (indices.empty()) throwBadInput("{}: nothing but boundaries of media", scene.file.string());
   indices_ = gl::Buffer("scene indices", indices.size() * sizeof(std::uint32_t), indices.data(), gl::Usage::staticDraw);
-  const std::array<gl::VertexArray::Attribute, 3> attributes{
-      {{0, 3, offsetof(Vertex, position)}, {1, 2, offsetof(Vertex, texCoord)}, {2, 3, offsetof(Vertex, normal)}}};
-  vertexArray_ = gl::VertexArray("scene", vertices_, sizeof(Vertex), attributes, &indices_);
+  vertexArray_ = gl::VertexArray("scene", vertices_, sizeof(Vertex), kAttributes, &indices_);
 }
 
 gl::ShaderFlags GpuScene::materialFlags(bool masked) const {
@@ -172,12 +175,12 @@ void GpuScene::bindSurface(const gl::Program& program, const Surface& surface) c
 
 void GpuScene::drawRange(const Draw& draw) const { gl::drawIndexedTriangles(draw.firstIndex, draw.indexCount); }
 
-void GpuScene::draw(const SurfacePrograms& programs, const View& view) const {
-  vertexArray_.bind();
+void GpuScene::draw(const SurfacePrograms& programs, const View& view, const Selection* only) const {
+  (only ? only->vertexArray_ : vertexArray_).bind();
   const bool isotropic = !view.anisotropic && isotropic_;
   if (isotropic) isotropic_->bind(UNIT_DIFFUSE);
   for (const bool masked : {false, true}) {
-    const std::vector<Draw>& all = masked ? masked_ : opaque_;
+    const std::vector<Draw>& all = masked ? (only ? only->masked_ : masked_) : (only ? only->opaque_ : opaque_);
     if (all.empty()) continue;
     std::vector<std::pair<float, const Draw*>> order;
     for (const Draw& draw : all) {
@@ -206,7 +209,7 @@ void GpuScene::drawDepth(const SurfacePrograms& programs) const {
   vertexArray_.bind();
   if (opaqueIndexCount_ > 0) {
     programs.opaque->use();
-    drawRange({0, opaqueIndexCount_, 0, {}, {}});
+    drawRange({0, opaqueIndexCount_, 0, {}, {}, 0});
   }
   if (masked_.empty()) return;
   programs.masked->use();
@@ -214,6 +217,57 @@ void GpuScene::drawDepth(const SurfacePrograms& programs) const {
     textures_[static_cast<std::size_t>(surfaces_[static_cast<std::size_t>(draw.surface)].maskTexture)].bind(UNIT_MASK);
     drawRange(draw);
   }
+}
+
+bool GpuScene::isSelectionWorthwhile(int size) const {
+  return isSoftware_ && scene_->indices.size() / 3 > static_cast<std::size_t>(size) * static_cast<std::size_t>(size);
+}
+
+GpuScene::Selection GpuScene::covering(const glm::mat4& clipFromWorld, int size) const {
+  // Vertices in texels; centres of texels are whole numbers. GPUs round positions to fractions of a texel, at least to
+  // 1/16 (GL_SUBPIXEL_BITS), and sums may be rounded in another order here.
+  const glm::mat4 rows = glm::transpose(clipFromWorld);
+  const float half = 0.5f * static_cast<float>(size);
+  const glm::vec4 toX = half * rows[0], toY = half * rows[1];
+  const glm::vec3 farthest(glm::max(glm::abs(scene_->bounds.min), glm::abs(scene_->bounds.max)));
+  const auto magnitude = [&](const glm::vec4& row) {
+    return glm::dot(glm::abs(glm::vec3(row)), farthest) + std::abs(row.w);
+  };
+  constexpr float kRoundings = 16.0f;
+  const float margin = 1.0f / 16.0f + kRoundings * std::numeric_limits<float>::epsilon() *
+                                          (std::max(magnitude(toX), magnitude(toY)) + half);
+  std::vector<glm::vec2> places(scene_->vertices.size());
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const glm::vec4 position(scene_->vertices[i].position, 1.0f);
+    places[i] = glm::vec2(glm::dot(toX, position), glm::dot(toY, position)) + (half - 0.5f);
+  }
+  const float last = static_cast<float>(size - 1);
+  const auto coversCentre = [&](float a, float b, float c) {
+    const float low = std::max(std::min({a, b, c}) - margin, 0.0f), high = std::min(std::max({a, b, c}) + margin, last);
+    return std::floor(high) >= low;
+  };
+
+  Selection selection;
+  std::vector<std::uint32_t> kept;
+  kept.reserve(scene_->indices.size() / 2);
+  for (const bool masked : {false, true})
+    for (const Draw& draw : masked ? masked_ : opaque_) {
+      Draw part = draw;
+      part.firstIndex = static_cast<std::uint32_t>(kept.size());
+      for (std::uint32_t i = draw.firstInScene; i < draw.firstInScene + draw.indexCount; i += 3) {
+        const std::uint32_t* corners = &scene_->indices[i];
+        const glm::vec2 &a = places[corners[0]], &b = places[corners[1]], &c = places[corners[2]];
+        if (coversCentre(a.x, b.x, c.x) && coversCentre(a.y, b.y, c.y)) kept.insert(kept.end(), corners, corners + 3);
+      }
+      part.indexCount = static_cast<std::uint32_t>(kept.size()) - part.firstIndex;
+      if (part.indexCount > 0) (masked ? selection.masked_ : selection.opaque_).push_back(part);
+    }
+  if (kept.empty()) return selection;
+  selection.indices_ =
+      gl::Buffer("scene indices of a map", kept.size() * sizeof(std::uint32_t), kept.data(), gl::Usage::staticDraw);
+  selection.vertexArray_ =
+      gl::VertexArray("scene for a map", vertices_, sizeof(Vertex), kAttributes, &selection.indices_);
+  return selection;
 }
 
 std::size_t GpuScene::gpuBytes() const {

@@ -39,9 +39,16 @@ class GpuScene {
     const glm::vec3* viewPoint = nullptr;
     bool anisotropic = true;  ///< filter colours as the settings say; false: what is drawn is not looked at
   };
-  void draw(const SurfacePrograms& programs, const View& view) const;
+  class Selection;
+  void draw(const SurfacePrograms& programs, const View& view, const Selection* only = nullptr) const;
   /// Only positions for opaque meshes, in one call; masked meshes with their masks.
   void drawDepth(const SurfacePrograms& programs) const;
+
+  /// The triangles that may cover the centre of a texel of a map with size x size texels under a parallel projection,
+  /// in the order in which all are drawn: the map is the same, bit by bit. They are found on the CPU.
+  Selection covering(const glm::mat4& clipFromWorld, int size) const;
+  /// Whether that takes less time than to draw all: where the CPU transforms vertices, and triangles outnumber texels.
+  bool isSelectionWorthwhile(int size) const;
 
   const Scene& scene() const { return *scene_; }
   const SceneNeeds& needs() const { return needs_; }
@@ -60,6 +67,7 @@ class GpuScene {
     std::uint32_t firstIndex, indexCount;
     int surface;
     glm::vec3 centre, halfExtent;
+    std::uint32_t firstInScene;  ///< of Scene::indices
   };
   void drawRange(const Draw& draw) const;
   void bindSurface(const gl::Program& program, const Surface& surface) const;
@@ -74,6 +82,19 @@ class GpuScene {
   std::vector<Surface> surfaces_;
   std::vector<Draw> opaque_, masked_;
   std::uint32_t opaqueIndexCount_ = 0;  ///< opaque meshes come first in the index buffer
+  bool isSoftware_;  ///< the renderer
+};
+
+class GpuScene::Selection {
+ public:
+  std::size_t gpuBytes() const { return indices_.bytes(); }
+  std::size_t triangleCount() const { return indices_.bytes() / (3 * sizeof(std::uint32_t)); }
+
+ private:
+  friend class GpuScene;
+  gl::Buffer indices_;
+  gl::VertexArray vertexArray_;
+  std::vector<Draw> opaque_, masked_;
 };
 
 }  // namespace lucerna

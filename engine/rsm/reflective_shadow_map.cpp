@@ -50,21 +50,27 @@ ReflectiveShadowMap::ReflectiveShadowMap(gl::ProgramLibrary& programs, const Gpu
   framebuffer_ = gl::Framebuffer(name, colors, &depth_);
 }
 
-void ReflectiveShadowMap::draw(const GpuScene& scene, bool depthClamp) {
+void ReflectiveShadowMap::draw(const GpuScene& scene, bool depthClamp, const GpuScene::Selection* only) {
   gl::RasterState state;
   state.depth = gl::Depth::lessWrite;
   state.depthClamp = depthClamp;
   const gl::RasterPass pass(kNames[static_cast<std::size_t>(light_)], framebuffer_, state);
   for (int attachment = 0; attachment < (albedo() ? 4 : 3); ++attachment) pass.clearColor(attachment, glm::vec4(0.0f));
   pass.clearDepth();
-  scene.draw(programs_, {nullptr, nullptr, false});
+  scene.draw(programs_, {nullptr, nullptr, false}, only);
 }
 
-ReflectiveShadowMap::Outputs ReflectiveShadowMap::record(const GpuScene& scene, double texelArea) {
+ReflectiveShadowMap::Outputs ReflectiveShadowMap::record(const GpuScene& scene, const SunFrustum& sun) {
   CHECK(light_ == Light::sun, "a map of light kind {}", static_cast<int>(light_));
+  const double texelArea = sun.texelArea(size());
+  const glm::mat4 clipFromWorld(sun.clipFromWorld);
+  if (scene.isSelectionWorthwhile(size()) && (!covering_ || coveredFrom_ != clipFromWorld)) {
+    covering_ = scene.covering(clipFromWorld, size());
+    coveredFrom_ = clipFromWorld;
+  }
   programs_.opaque->set("texelArea", static_cast<float>(texelArea));
   if (programs_.masked) programs_.masked->set("texelArea", static_cast<float>(texelArea));
-  draw(scene, false);
+  draw(scene, false, covering_ ? &*covering_ : nullptr);
   const double irradiance = scene.scene().sun ? largest(scene.scene().sun->irradiance) : 0.0;
   return {position_, normal_, flux_, static_cast<float>(texelArea), irradiance * texelArea * size() * size(),
           light_,    albedo()};
@@ -88,7 +94,7 @@ ReflectiveShadowMap::Outputs ReflectiveShadowMap::record(const GpuScene& scene, 
     program->set("cosInner", static_cast<float>(light.cosInner));
     program->set("cosOuter", static_cast<float>(light.cosOuter));
   }
-  draw(scene, true);  // geometry in front of the near plane reflects too
+  draw(scene, true, nullptr);  // geometry in front of the near plane reflects too
   return {position_, normal_, flux_, 1.0f, largest(light.intensity) * light.largestSolidAngle(size()),
           light_,    albedo()};
 }

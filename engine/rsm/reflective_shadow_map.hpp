@@ -5,8 +5,11 @@
 
 #include "forward/gpu_scene.hpp"
 #include "forward/light_views.hpp"
+#include "forward/sun_frustum.hpp"
 #include "gl/pass.hpp"
 #include "shared/bindings.h"
+
+#include <optional>
 
 namespace lucerna {
 
@@ -44,24 +47,26 @@ class ReflectiveShadowMap {
 
   ReflectiveShadowMap(gl::ProgramLibrary& programs, const GpuScene& scene, const Settings& settings);
 
-  /// The sun's: draws the scene into it; the frame's uniform block must be bound. texelArea:
-  /// SunFrustum::texelArea(size).
-  Outputs record(const GpuScene& scene, double texelArea);
+  /// The sun's: draws the scene into it; the frame's uniform block with that frustum must be bound.
+  Outputs record(const GpuScene& scene, const SunFrustum& sun);
   /// A spot's or an omnidirectional light's; the frame's uniform block is not read.
   Outputs record(const GpuScene& scene, const LightViews& light);
   int size() const { return position_.size().x; }
   Light light() const { return light_; }
   std::size_t gpuBytes() const {
-    return position_.bytes() + normal_.bytes() + flux_.bytes() + albedo_.bytes() + depth_.bytes();
+    return position_.bytes() + normal_.bytes() + flux_.bytes() + albedo_.bytes() + depth_.bytes() +
+           (covering_ ? covering_->gpuBytes() : 0);
   }
 
  private:
-  void draw(const GpuScene& scene, bool depthClamp);
+  void draw(const GpuScene& scene, bool depthClamp, const GpuScene::Selection* only);
   const gl::Texture* albedo() const { return albedo_.id() ? &albedo_ : nullptr; }
   Light light_;
   SurfacePrograms programs_;
   gl::Texture position_, normal_, flux_, albedo_, depth_;
   gl::Framebuffer framebuffer_;
+  std::optional<GpuScene::Selection> covering_;  ///< of the sun's map, if worthwhile
+  glm::mat4 coveredFrom_{0.0f};  ///< clipFromWorld for which it was made
 };
 
 }  // namespace lucerna

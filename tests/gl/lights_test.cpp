@@ -278,7 +278,7 @@ TEST_F(LightsGl, TheSunsFluxCountsProjectedAreaAndItsSurfelsTrueArea) {
   const gl::Buffer block("frame constants", sizeof frame, &frame, gl::Usage::staticDraw);
   block.bindUniform(0);
   ReflectiveShadowMap rsm(programs(), gpuScene, {256, ReflectiveShadowMap::Light::sun});
-  const ReflectiveShadowMap::Outputs outputs = rsm.record(gpuScene, frustum.texelArea(256));
+  const ReflectiveShadowMap::Outputs outputs = rsm.record(gpuScene, frustum);
   const Totals sum = totals(outputs);
   EXPECT_NEAR(outputs.largestFlux / (2.0 * frustum.width * frustum.height), 1.0, 1e-6);
   const double projected = 16.0 * std::abs(glm::normalize(glm::cross(u, v)).y);

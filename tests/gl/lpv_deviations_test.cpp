@@ -647,7 +647,7 @@ TEST_F(LpvDeviations, RsmFluxCosine) {
       const gl::Buffer constants("frame", sizeof frame, &frame, gl::Usage::staticDraw);
       constants.bindUniform(0);
       double sum = 0.0;
-      for (const glm::vec4& texel : rsm.record(gpuScene, frustum.texelArea(s.size)).flux.readRgba())
+      for (const glm::vec4& texel : rsm.record(gpuScene, frustum).flux.readRgba())
         sum += static_cast<double>(texel.x);
       return sum;
     };
