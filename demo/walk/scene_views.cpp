@@ -306,12 +306,16 @@ std::vector<gl::Lines::Line> glyphsOf(Glyphs glyphs, const Renderer& renderer, c
   if (glyphs == Glyphs::voxels) return voxelsOf(scene, settings.lpv.voxels, renderer.origin(), camera, most);
   const LightPropagationVolume* volume = renderer.lpv();
   if (glyphs == Glyphs::none || (glyphs == Glyphs::receivers ? !renderer.receivers() : !volume)) return {};
-  // Place them as render/lpv_frame.cpp does.
+  // Place them as render/lpv_frame.cpp and, but for the blend, render/receivers_frame.cpp do.
   Bounds bounds = scene.bounds;
   bounds.min -= renderer.origin();
   bounds.max -= renderer.origin();
+  Camera inFrame = camera;
+  inFrame.position -= renderer.origin();
   const std::vector<Cascade> cascades =
-      placeCascades(settings.lpv.cascades, bounds, camera.position - renderer.origin(), camera.direction);
+      glyphs == Glyphs::receivers
+          ? placeReceiverCascades(settings.lpv.cascades, bounds, inFrame, 1.0)
+          : placeCascades(settings.lpv.cascades, bounds, inFrame.position, inFrame.direction);
   const int k = std::clamp(cascade, 0, static_cast<int>(cascades.size()) - 1);
   const Cascade& placed = cascades[static_cast<std::size_t>(k)];
   if (glyphs == Glyphs::receivers) return receiversOf(*renderer.receivers(), renderer, camera, placed, k, most);

@@ -35,12 +35,33 @@ std::vector<Cascade> placeCascades(const CascadeSettings& settings, const Bounds
         centre[axis] = low[axis] < high[axis] ? std::clamp(centre[axis], low[axis], high[axis]) : scene.centre()[axis];
     }
     cascade.centre = centre;
-    // All but the coarsest move by two cells, so that joining always averages the same pairs of cells.
-    const std::int64_t stride = k + 1 < settings.cascades ? 2 : 1;
+    const std::int64_t stride = k + 1 < settings.cascades ? settings.steps : 1;
     for (int axis = 0; axis < 3; ++axis)
       cascade.firstCell[axis] = stride * static_cast<std::int64_t>(std::floor(
                                              (centre[axis] - half) / (cascade.cellSize * static_cast<double>(stride))));
     cascades.push_back(cascade);
+  }
+  return cascades;
+}
+
+std::vector<Cascade> placeReceiverCascades(const CascadeSettings& settings, const Bounds& scene, const Camera& camera,
+                                           double aspect) {
+  CascadeSettings single = settings;
+  single.steps = 1;
+  std::vector<Cascade> cascades = placeCascades(single, scene, camera.position, camera.direction);
+  const double tangent = std::tan(0.5 * camera.verticalFov);
+  const double cosine = 1.0 / std::sqrt(1.0 + tangent * tangent * (1.0 + aspect * aspect));  // of the view's corners
+  const bool held = settings.heldInScene && !scene.empty();
+  const glm::dvec3 nearest = held ? glm::clamp(camera.position, scene.min, scene.max) : camera.position;
+  for (Cascade& cascade : cascades) {
+    // A point at the distance t in a corner of the view is |t v - pushed d| from the grid's centre, for unit vectors
+    // with <v, d> = cosine. It is inside where that is at most `half`, as the grid holds a ball of that radius: from
+    // its side are taken a cell of snapping, half a cell of interpolation, and a cell in which the grid fades out.
+    const double half = (0.5 * settings.cells - 2.5) * cascade.cellSize,
+                 pushed = settings.push * 0.5 * settings.cells * cascade.cellSize,
+                 beside2 = pushed * pushed * (1.0 - cosine * cosine);
+    cascade.reach = half > 0.0 ? pushed * cosine + std::sqrt(std::max(half * half - beside2, 0.0)) : 0.0;
+    cascade.centre = nearest;
   }
   return cascades;
 }

@@ -22,12 +22,14 @@ struct CascadeSettings {
   double push = 0.8;  ///< how far the centre is pushed along the view, in half extents of the grid
   double spanOfScene = 2.0;  ///< edge of the coarsest over the scene's longest side, if cellSize is 0
   bool heldInScene = true;  ///< clamp centres so that grids do not stick out of the scene more than necessary
+  int steps = 2;  ///< cells by which all but the coarsest move: joining then always averages the same pairs of cells
 };
 
 struct Cascade {
   glm::i64vec3 firstCell{0};  ///< minimum = firstCell * cellSize
   double cellSize = 1.0;  ///< scene units
   glm::dvec3 centre{0.0};  ///< before snapping: blending follows it, so that it does not jump
+  double reach = 0.0;  ///< for receivers: distance from `centre` at which it has faded out, scene units
 
   glm::dvec3 minimum() const { return glm::dvec3(firstCell) * cellSize; }
 };
@@ -37,5 +39,12 @@ struct Cascade {
 /// stick out of the scene more than necessary, then snapped.
 std::vector<Cascade> placeCascades(const CascadeSettings& settings, const Bounds& scene,
                                    const glm::dvec3& cameraPosition, const glm::dvec3& cameraDirection);
+
+/// The same for receivers, which are blended by their distance from the camera: turning it does not change what a
+/// surface shows. `centre` is the camera, or with heldInScene the point of the scene nearest to it. `reach` is the
+/// largest distance from a camera in the scene at which all that is in view (aspect: width over height) is within the
+/// cascade, whichever way the camera looks.
+std::vector<Cascade> placeReceiverCascades(const CascadeSettings& settings, const Bounds& scene, const Camera& camera,
+                                           double aspect);
 
 }  // namespace lucerna

@@ -90,7 +90,8 @@ shared::LpvConstants lpvConstants(const LpvSettings& settings, const std::vector
     target.blendCentre = glm::vec3(cascade.centre);
     // Snapping moves the grid by up to two cells and the trilinear lookup needs half a cell more.
     const bool coarsest = k + 1 == cascades.size();
-    target.blendHalf = coarsest ? 1e30f : static_cast<float>((0.5 * cells - 2.5 - offset) * cascade.cellSize);
+    const double half = cascade.reach > 0.0 ? cascade.reach : (0.5 * cells - 2.5 - offset) * cascade.cellSize;
+    target.blendHalf = coarsest ? 1e30f : static_cast<float>(half);
     if (!coarsest && target.blendHalf <= 0.0f) target.blendHalf = 1e-30f;  // too few cells to blend: never used
   }
   constants.shape = {cells, settings.cascades.cascades, settings.glossyCells(), 0};

@@ -36,7 +36,7 @@ class LpvReceivers {
  public:
   using Light = ReceivedLight;
   struct Inputs {
-    std::vector<Cascade> cascades;  ///< finest first, as many as in the settings
+    std::vector<Cascade> cascades;  ///< of placeReceiverCascades
     Camera camera;  ///< of the visible surfaces, in the frame's coordinates
     glm::mat4 worldFromClip;  ///< the same
     const VisibleSurfaces& visible;
@@ -89,8 +89,8 @@ class LpvReceivers {
   /// As LpvTransport::gather finds it, at each pixel instead of in cells.
   Image gatheredAtPixels(const std::vector<ReflectiveShadowMap::Outputs>& maps) const;
   /// From the exact radiance in the middle of the cells around, as LpvTransport::propagate reads it: two bands of
-  /// spherical harmonics, trilinear. paths: per pixel, rounded up to LPV_LANES.
-  Image readFromCells(int paths) const;
+  /// spherical harmonics, trilinear. cascades: where propagate places them; paths: per pixel, rounded up to LPV_LANES.
+  Image readFromCells(const std::vector<Cascade>& cascades, int paths) const;
 
   void collect(bool wait = false);
   const Counts& counts() const { return counts_; }

@@ -59,11 +59,14 @@ Image LpvReceivers::gatheredAtPixels(const std::vector<ReflectiveShadowMap::Outp
   return atPixels(kRounds, [&](const gl::Buffer& work) { gather_->gather(maps, work, kLitGroups); });
 }
 
-Image LpvReceivers::readFromCells(int paths) const {
+Image LpvReceivers::readFromCells(const std::vector<Cascade>& cascades, int paths) const {
+  const shared::LpvConstants lpv = lpvConstants(settings_, cascades, referenceIrradiance_);
+  const gl::Buffer cells("lpv constants of cells", sizeof lpv, &lpv, gl::Usage::staticDraw);
   gl::ShaderFlags flags = rayFlags(LPV_LANES);
   flags.insert(flags.end(), {{"CACHED", 0}, {"FROM_CELLS", 1}});
   const gl::Program& program = programs_->loadCompute("lpv paths from cells", "lpv/receivers/paths.comp", flags);
   return atPixels(1, [&](const gl::Buffer& work) {
+    cells.bindUniform(BLOCK_LPV);
     for (int done = 0; done < paths; done += LPV_LANES) {
       const gl::ComputePass pass("lpv paths from cells", gl::Barrier::storage | gl::Barrier::bufferUpdate);
       program.use();

@@ -59,10 +59,17 @@ bool ReceiversFrame::record(gl::TimeQuery& timer, const FrameView& view, FrameEf
   const gl::TimeQuery::Scope stage(timer, "receivers");
   const LpvSettings& lpv = parts_.settings.lpv;
   const int rounds = effort.wholePicture ? (lpv.samples + lpv.rays - 1) / lpv.rays : 1;
-  receivers_.update({placeCascades(lpv.cascades, parts_.drawn.scene().bounds, volume.position, volume.direction),
+  const glm::dvec2 size(visible_.size());
+  receivers_.update({placeReceiverCascades(lpv.cascades, parts_.drawn.scene().bounds, volume, size.x / size.y),
                      view.camera, glm::mat4(glm::inverse(view.clip)), visible_, maps, mapsAreNew, effort.fadesIn},
                     rounds);
   return true;
+}
+
+Image ReceiversFrame::readFromCells(int paths) const {
+  return receivers_.readFromCells(placeCascades(parts_.settings.lpv.cascades, parts_.drawn.scene().bounds,
+                                                volumePosition_, volumeDirection_),
+                                  paths);
 }
 
 void ReceiversFrame::forget() {

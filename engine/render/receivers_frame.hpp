@@ -42,7 +42,7 @@ class ReceiversFrame {
   Image gatheredAtPixels() const {
     return receivers_.gatheredAtPixels(maps_ ? maps_->outputs() : std::vector<ReflectiveShadowMap::Outputs>{});
   }
-  Image readFromCells(int paths) const { return receivers_.readFromCells(paths); }
+  Image readFromCells(int paths) const;
   double largestTurns() const { return receivers_.mostTurns(); }
   void addStagePictures(std::vector<StagePicture>& pictures) const {
     if (maps_) maps_->addStagePictures(pictures);

@@ -118,7 +118,7 @@ TEST_F(LpvReceiversGl, AClosedRoomThatShines) {
   // a) with all.
   const Scene scene = furnace({0.8f, 0.5f, 0.0f}, {1.0f, 2.0f, 3.0f});
   for (const int bounces : {1, 2, 5, kAll}) {
-    const Picture seen = picture(scene, kInside, settings(bounces, 256));
+    const Picture seen = picture(scene, kInside, settings(bounces, bounces == kAll ? 1024 : 256));
     glm::dvec3 expected;
     const glm::dvec3 albedo(0.8f, 0.5f, 0.0f), emission(1.0, 2.0, 3.0);
     for (int c = 0; c < 3; ++c)
@@ -498,9 +498,11 @@ TEST_F(LpvGatherGl, WhatSolidsHideIsNotBounced) {
   const Camera camera = lookingAt({4.0, 3.0, 0.5}, {-4.0, 1.0, 0.0}, 0.8);
   const auto of = [&](RenderSettings s) { return meanOf(picture(builder.scene(), camera, s).image).x; };
   RenderSettings s = FloorAndWall::fine(settings(kAll, 512, Component::indirect));
-  const double ratio = of(gathered(s, LpvVisibility::rays)) / of(s);
+  const double seen = of(gathered(s, LpvVisibility::rays));
+  s.lpv.bounces = 24;  // paths of their own, none of which ends at receivers
+  const double ratio = seen / of(s);
   report("walls on a floor, gathered over traced", ratio);
-  EXPECT_NEAR(ratio, 1.0, 0.01);
+  EXPECT_NEAR(ratio, 1.0, 0.02);  // 8^3 cells of points miss 1.3 %; with the points below the walls it is 3.5 %
 }
 
 // A lit square far away, of which a piece of a wall sees a part: a screen hides its lower half, or it reaches behind
@@ -1042,21 +1044,24 @@ TEST_F(LpvReceiversKept, WhatIsSeenAfterAMoveIsWhatIsSeenFromTheStart) {
   EXPECT_EQ(renderer.receivers()->counts().left, 0u);
 }
 
+/// Of a pixel, relative to what it was or, where it is dark, to the picture's mean.
+double largestStep(const Image& a, const Image& b) {
+  const glm::dvec3 mean = meanOf(a);
+  double largest = 0.0;
+  for (std::size_t i = 0; i < a.pixels.size(); ++i)
+    for (int c = 0; c < 3; ++c)
+      largest =
+          std::max(largest, std::abs(b.pixels[i][c] - a.pixels[i][c]) / std::max<double>(a.pixels[i][c], mean[c]));
+  return largest;
+}
+
 // New receivers begin with what was seen in their place and move by at most lpv.most-change of it a frame, until they
 // show what a renderer without that bound shows.
 TEST_F(LpvReceiversKept, WhatIsSeenChangesByNoMoreThanTheBoundAndArrives) {
   const Scene scene = test::openBox();
-  const Camera here = test::openBoxCamera();
-  const auto largestStep = [](const Image& a, const Image& b) {
-    const glm::dvec3 mean = meanOf(a);
-    double largest = 0.0;
-    for (std::size_t i = 0; i < a.pixels.size(); ++i)
-      for (int c = 0; c < 3; ++c)
-        largest =
-            std::max(largest, std::abs(b.pixels[i][c] - a.pixels[i][c]) / std::max<double>(a.pixels[i][c], mean[c]));
-    return largest;
-  };
-  // The view stays and the volume moves, so that nothing but the volume changes the picture.
+  const Camera here = lookingAt({0.0, 0.5, 8.4}, {4.0, -4.0, -5.0}, 0.4);
+  // The view stays and the volume moves, so that nothing but the volume changes the picture. What is seen stays in view
+  // of the volume's wider camera.
   struct Walk {
     double largestStep = 0.0;
     Image last;
@@ -1067,25 +1072,25 @@ TEST_F(LpvReceiversKept, WhatIsSeenChangesByNoMoreThanTheBoundAndArrives) {
     s.lpv.leastRays = 16;  // noise of new receivers is what would be seen
     s.lpv.mostChange = mostChange;
     s.lpv.cascades.heldInScene = false;
-    s.lpv.cascades.cellSize = 2.0;  // all of the box lies in the coarser grid, some of it in the finer one
+    s.lpv.cascades.cellSize = 3.0;  // all of the box lies in the coarser grid, some of it in the finer one
     Renderer renderer(context(), library(), scene, s);
-    renderer.renderToTheEnd(here);
+    Camera volume = lookingAt(here.position, {4.0, -4.0, -5.0}, 1.0);
+    for (int i = 0; i < 3; ++i) renderer.render(here, volume), renderer.drain();
     Walk result;
     result.last = renderer.readRadiance();
-    const auto look = [&](const Camera& volume) {
+    const auto look = [&] {
       renderer.render(here, volume);
       renderer.drain();
       const Image now = renderer.readRadiance();
       result.largestStep = std::max(result.largestStep, largestStep(result.last, now));
       result.last = now;
     };
-    Camera volume = here;
     for (int i = 0; i < 60; ++i) {
       volume.position += glm::dvec3(0.01, 0.0, -0.04);
-      look(volume);
+      look();
     }
     while (!renderer.isSettled() && result.framesToArrive < 400) {
-      look(volume);
+      look();
       ++result.framesToArrive;
     }
     return result;
@@ -1094,11 +1099,37 @@ TEST_F(LpvReceiversKept, WhatIsSeenChangesByNoMoreThanTheBoundAndArrives) {
   report("largest relative change of a pixel in a frame", bounded.largestStep);
   report("without the bound", free.largestStep);
   report("frames until it has arrived", bounded.framesToArrive);
-  EXPECT_GT(free.largestStep, 0.05);  // else there is nothing to bound
-  EXPECT_LT(bounded.largestStep,
-            0.015);  // 0.004, and the step by which the finer grid's blending moves over the coarser one
-  EXPECT_LT(bounded.framesToArrive, 200);
+  EXPECT_GT(free.largestStep, 0.025);  // else there is nothing to bound
+  // 0.004, and the step by which the finer grid's blending moves over the coarser one.
+  EXPECT_LT(bounded.largestStep, 0.012);
+  EXPECT_LT(bounded.framesToArrive, 300);  // 64 to fade in, the others to change by up to 60 %
   EXPECT_LT(largestDifference(bounded.last, free.last), 1e-6);
+}
+
+// Cascades are blended by distance from the camera, so a turn of the camera moves grids and changes nothing.
+TEST_F(LpvReceiversKept, TurningChangesNothingThatIsSeen) {
+  const Scene scene = test::openBox();
+  const Camera narrow = lookingAt({0.0, 0.0, -0.2}, {0.0, 0.0, -5.0}, 0.4);
+  RenderSettings s = settings(1, 64, Component::indirect);
+  s.lpv.cascades.cells = 32;
+  s.lpv.cascades.cellSize = 0.9;  // the finer grid fades out on the back wall
+  s.lpv.cascades.heldInScene = false;
+  Renderer renderer(context(), library(), scene, s);
+  const auto look = [&](double angle) {
+    renderer.render(
+        narrow, lookingAt(narrow.position, narrow.position + glm::dvec3(std::sin(angle), 0.0, -std::cos(angle)), 2.0));
+    return renderer.readRadiance();
+  };
+  for (int i = 0; i < 400 && !(i > 2 && renderer.isSettled()); ++i) look(0.0), renderer.drain();
+  Image before = look(0.0);
+  double largest = 0.0;
+  for (int i = 1; i <= 40; ++i) {
+    const Image now = look(0.02 * i);
+    largest = std::max(largest, largestStep(before, now));
+    before = now;
+  }
+  report("largest relative change of a pixel in a turn by 0.02", largest);
+  EXPECT_LT(largest, 1e-4);
 }
 
 TEST_F(LpvReceiversKept, WithoutRoomReceiversAreLeftOutAndCounted) {

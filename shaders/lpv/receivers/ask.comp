@@ -14,11 +14,11 @@ float weightsOfCascades(out float weights[LPV_MAX_CASCADES], out float there[LPV
   for (int k = 0; k < LPV_MAX_CASCADES; ++k) {
     weights[k] = there[k] = 0.0;
     if (k >= lpv.shape.y || !(left > 0.0)) continue;
-    float weight = left * lpvCascadeWeight(k, askedPosition);
+    float weight = left * receivedCascadeWeight(k, askedPosition);
     if (!(weight > 0.0)) continue;
     there[k] = receivedInCascade(k, askedPosition, askedNormal).w;
     if (!(there[k] > kLeast)) continue;
-    weights[k] = weight * min(there[k] / kEnough, 1.0);
+    weights[k] = weight * shareOfCascade(there[k]);
     sum += weights[k];
     left -= weights[k];
   }
@@ -40,7 +40,7 @@ void main() {
       vec4 held = texelFetch(lpvReceived, cell + ivec3(0, 0, (k * LPV_FACES + face) * cells), 0);
       uint slot = texelFetch(lpvSlots, slotOf(k, face, cell + receiving.firstCell[k].xyz)).x;
       if (!(held.w > 0.0) || slot == 0u) continue;
-      tellPart(AskedPart(share * lpv.referenceIrradiance * held.rgb, share * held.w, receivers[slot - 1u].position,
+      tellPart(AskedPart(share * receivedUnit() * held.rgb, share * held.w, receivers[slot - 1u].position,
                          0.0, ivec4(cell, k), vec4(0.0), vec4(0.0), vec4(0.0)));
     }
   }

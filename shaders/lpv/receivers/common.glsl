@@ -6,6 +6,9 @@
 #include "shared/lpv_receivers.h"
 layout(std140, binding = BLOCK_RECEIVERS) uniform LpvReceiverBlock { LpvReceiverConstants receiving; };
 
+// Unit of the irradiance in the texture: small, since it is stored times a weight that may be 1 / 8192.
+float receivedUnit() { return lpv.referenceIrradiance / 16.0; }
+
 int faceOf(int axis, float component) { return 2 * axis + (component < 0.0 ? 1 : 0); }
 
 // cell: index counted from the origin.

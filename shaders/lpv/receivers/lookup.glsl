@@ -3,7 +3,7 @@
 // how much a receiver counts, 0 in empty cells.
 #include "shared/bindings.h"
 #include "lpv/receivers/common.glsl"
-#include "lpv/cascade_weight.glsl"
+#include "lpv/receivers/cascade_weight.glsl"
 layout(binding = UNIT_RECEIVED) uniform sampler3D lpvReceived;  // faces of cascades stacked along z
 
 // Position for a lookup in a cascade, in cells of one face.
@@ -14,7 +14,7 @@ vec3 receivedPlace(int k, vec3 position) {
   return texel;
 }
 
-// xyz: irradiance over E_ref, times w; w: total weight of the receivers found.
+// xyz: irradiance in receivedUnit(), times w; w: total weight of the receivers found.
 vec4 receivedInCascade(int k, vec3 position, vec3 normal) {
   float cells = float(lpv.shape.x);
   vec3 uvw = receivedPlace(k, position) / vec3(cells, cells, cells * float(lpv.shape.y * LPV_FACES));
@@ -26,25 +26,31 @@ vec4 receivedInCascade(int k, vec3 position, vec3 normal) {
   return sum;
 }
 
-const float kEnough = 1.0 / 32.0, kLeast = 1e-5;
+// Enough of a cascade: the least that a point's own receiver contributes, 1/8 of its presence of at least 1/4. The
+// share reaches a half at kHalf already, so that it follows a logistic curve while presence grows (store.comp).
+const float kEnough = 1.0 / 32.0, kHalf = 1.0 / 512.0;
+// A weight below this is only the filter's rounding: its colour would be noise.
+const float kLeast = 1e-5;
 
-// From the finest cascade to the coarsest, each blended into the next near its border and where it has few receivers. A
-// total weight of 1/8 of 1/4, the least that a point's own new receiver contributes, is enough. A weight below kLeast
-// is only the filter's rounding: its colour would be noise.
+float shareOfCascade(float found) {
+  return min(found * (kEnough + kHalf) / (kEnough * (found + kHalf)), 1.0);
+}
+
+// From the finest cascade to the coarsest, each blended into the next near its reach and where it has few receivers.
 // found: false if no cascade has any receiver.
 vec3 receivedIrradiance(vec3 position, vec3 normal, out bool found) {
   vec3 irradiance = vec3(0.0);
   float left = 1.0, sum = 0.0;
   for (int k = 0; k < lpv.shape.y && left > 0.0; ++k) {
-    float weight = left * lpvCascadeWeight(k, position);
+    float weight = left * receivedCascadeWeight(k, position);
     if (!(weight > 0.0)) continue;
     vec4 here = receivedInCascade(k, position, normal);
     if (!(here.w > kLeast)) continue;
-    weight *= min(here.w / kEnough, 1.0);
+    weight *= shareOfCascade(here.w);
     irradiance += weight * here.rgb / here.w;
     sum += weight;  // not 1 - left, which would cancel for a small weight
     left -= weight;
   }
   found = sum > 0.0;
-  return found ? irradiance * (lpv.referenceIrradiance / sum) : vec3(0.0);
+  return found ? irradiance * (receivedUnit() / sum) : vec3(0.0);
 }

@@ -6,7 +6,7 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "lpv/receivers/common.glsl"
 #include "lpv/receivers/work.glsl"
-#include "lpv/cascade_weight.glsl"
+#include "lpv/receivers/cascade_weight.glsl"
 #include "forward/visible.glsl"
 layout(binding = 0) uniform usamplerBuffer lpvSlots;  // 0: empty, else the receiver's index + 1
 #if CLAIM
@@ -28,7 +28,7 @@ void main() {
   vec3 position = visiblePosition(pixel), normal = visibleUnitNormal(pixel);
   float left = 1.0;
   for (int k = 0; k < lpv.shape.y && left > 0.0; ++k) {
-    float weight = left * lpvCascadeWeight(k, position);
+    float weight = left * receivedCascadeWeight(k, position);
     if (!(weight > 0.0)) continue;
     left -= weight;
     vec3 inCells = (position - lpv.cascades[k].minimum) / lpv.cascades[k].cellSize;

@@ -12,7 +12,9 @@ uniform float fullPaths;   // paths from which a receiver counts fully and is no
 uniform uint enoughPaths;  // an LPV_FIRST receiver follows its estimate without limit until it has this many
 // largest change per frame of the shown irradiance, relative to the larger of old and target; 0: no limit
 uniform float mostChange;
-const float kFadeIn = 1.0 / 16.0;  // per frame
+// A new receiver's weight grows by a factor per frame, from little, so that its share beside others of any weight
+// follows a logistic curve: by at most ln(kGrowth) / 4 = 1.9 % per frame. 117 frames.
+const float kFirstPresence = 1.0 / 8192.0, kGrowth = 1.08, kNearlyPresent = 127.0 / 128.0 * LPV_PRESENT;
 
 // Avoids visible jumps: the irradiance that a receiver shows moves gradually towards the estimate from its own and its
 // neighbours' paths, and a new receiver fades in. Where nothing was shown before, it starts with the estimate of its
@@ -26,8 +28,9 @@ void show(uint index, inout LpvReceiver receiver, vec3 target) {
   if (isFirst && receiver.paths >= enoughPaths) receivers[index].state = receiver.state & ~LPV_FIRST;
   bool arrives = mostChange == 0.0 || isFirst || largest <= mostChange * scale;
   receiver.shown = arrives ? target : receiver.shown + change * (mostChange * scale / largest);
-  float presence = mostChange == 0.0 ? LPV_PRESENT : min(receiver.presence + kFadeIn, LPV_PRESENT);
-  receiver.presence = arrives ? presence : min(presence, LPV_PRESENT - 0.5 * kFadeIn);
+  float presence =
+      mostChange == 0.0 ? LPV_PRESENT : clamp(receiver.presence * kGrowth, kFirstPresence, LPV_PRESENT);
+  receiver.presence = arrives ? presence : min(presence, kNearlyPresent);
   receivers[index].shown = receiver.shown;
   receivers[index].presence = receiver.presence;
 }
@@ -66,5 +69,5 @@ void main() {
   float counts = clamp(float(receiver.paths) / fullPaths, 0.25, 1.0);
   show(index, receiver, withNeighbours(receiver));
   imageStore(lpvReceived, ivec3(place.xy, receiver.cell.w * lpv.shape.x + place.z),
-             receiver.presence * counts * vec4(receiver.shown / lpv.referenceIrradiance, 1.0));
+             min(receiver.presence, counts) * vec4(receiver.shown / receivedUnit(), 1.0));
 }

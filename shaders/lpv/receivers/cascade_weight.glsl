@@ -1,0 +1,13 @@
+// How far a point is inside a cascade of receivers: 1 near the camera, 0 where the cascade has faded out. It depends on
+// the distance from the camera alone: were it to follow the grid, which is pushed along the view, then every turn of
+// the camera would change what all surfaces show. What is in view is within the grid as far as the cascade reaches
+// (placeReceiverCascades); behind the camera the grid's own border ends it, over one cell. Needs lpv/common.glsl.
+float receivedCascadeWeight(int k, vec3 position) {
+  if (k + 1 == lpv.shape.y) return 1.0;  // outside its grid the coarsest has no receivers
+  LpvCascade cascade = lpv.cascades[k];
+  vec3 place = (position - cascade.minimum) / cascade.cellSize,
+       fromBorder = min(place, float(lpv.shape.x) - place);
+  float inside = clamp(min(fromBorder.x, min(fromBorder.y, fromBorder.z)) - 0.5, 0.0, 1.0);
+  float rest = cascade.blendHalf - distance(position, cascade.blendCentre);
+  return inside * clamp(rest / (lpv.blendBand * cascade.blendHalf), 0.0, 1.0);
+}
