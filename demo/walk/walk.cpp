@@ -141,6 +141,7 @@ int record(const WalkOptions& options, const Host& host, const gl::Context& cont
   std::vector<double> frameSeconds;
   std::optional<int> before;
   Change largest;
+  nlohmann::ordered_json changes = nlohmann::ordered_json::array();
   int done = 0;
   for (std::size_t i = part.first(); i < part.last() && !interrupted(); ++i, ++done) {
     const fs::path file = folder / fmt::format("frame_{:04}.png", i);
@@ -162,6 +163,7 @@ int record(const WalkOptions& options, const Host& host, const gl::Context& cont
       renderer.render(cameras[i], path.view(*before));
       const Change change = changeBetween(renderer.readRadiance(), now);
       largest = {std::max(largest.mean, change.mean), std::max(largest.block, change.block)};
+      changes.push_back({{"view", views[i]}, {"mean", change.mean}, {"block", change.block}});
     }
     before = views[i];
     progress.update(done + 1);
@@ -183,7 +185,7 @@ int record(const WalkOptions& options, const Host& host, const gl::Context& cont
   }
   nlohmann::ordered_json json = resultJson(options, host, context, renderer, done, seconds);
   json["frames_per_second"] = done / seconds;
-  if (options.flicker) json["flicker"] = {{"mean", largest.mean}, {"block", largest.block}};
+  if (options.flicker) json["flicker"] = {{"mean", largest.mean}, {"block", largest.block}, {"views", changes}};
   options.common.writeJson(json);
   return exitCode();
 }

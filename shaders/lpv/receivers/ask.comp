@@ -18,7 +18,7 @@ float weightsOfCascades(out float weights[LPV_MAX_CASCADES], out float there[LPV
     if (!(weight > 0.0)) continue;
     there[k] = receivedInCascade(k, askedPosition, askedNormal).w;
     if (!(there[k] > kLeast)) continue;
-    weights[k] = weight * shareOfCascade(there[k]);
+    weights[k] = weight * min(there[k] / kEnough, 1.0);
     sum += weights[k];
     left -= weights[k];
   }

@@ -26,15 +26,9 @@ vec4 receivedInCascade(int k, vec3 position, vec3 normal) {
   return sum;
 }
 
-// Enough of a cascade: the least that a point's own receiver contributes, 1/8 of its presence of at least 1/4. The
-// share reaches a half at kHalf already, so that it follows a logistic curve while presence grows (store.comp).
-const float kEnough = 1.0 / 32.0, kHalf = 1.0 / 512.0;
-// A weight below this is only the filter's rounding: its colour would be noise.
-const float kLeast = 1e-5;
-
-float shareOfCascade(float found) {
-  return min(found * (kEnough + kHalf) / (kEnough * (found + kHalf)), 1.0);
-}
+// Enough of a cascade: the least that a point's own receiver contributes, 1/8 of its presence of at least 1/4. A weight
+// below kLeast is only the filter's rounding: its colour would be noise.
+const float kEnough = 1.0 / 32.0, kLeast = 1e-5;
 
 // From the finest cascade to the coarsest, each blended into the next near its reach and where it has few receivers.
 // found: false if no cascade has any receiver.
@@ -46,7 +40,7 @@ vec3 receivedIrradiance(vec3 position, vec3 normal, out bool found) {
     if (!(weight > 0.0)) continue;
     vec4 here = receivedInCascade(k, position, normal);
     if (!(here.w > kLeast)) continue;
-    weight *= shareOfCascade(here.w);
+    weight *= min(here.w / kEnough, 1.0);
     irradiance += weight * here.rgb / here.w;
     sum += weight;  // not 1 - left, which would cancel for a small weight
     left -= weight;

@@ -12,9 +12,9 @@ uniform float fullPaths;   // paths from which a receiver counts fully and is no
 uniform uint enoughPaths;  // an LPV_FIRST receiver follows its estimate without limit until it has this many
 // largest change per frame of the shown irradiance, relative to the larger of old and target; 0: no limit
 uniform float mostChange;
-// A new receiver's weight grows by a factor per frame, from little, so that its share beside others of any weight
-// follows a logistic curve: by at most ln(kGrowth) / 4 = 1.9 % per frame. 117 frames.
-const float kFirstPresence = 1.0 / 8192.0, kGrowth = 1.08, kNearlyPresent = 127.0 / 128.0 * LPV_PRESENT;
+// A new receiver's weight grows per frame by kGrowth of what it is and of what those beside it may have at least. What it
+// takes away from a much brighter one then darkens a surface by at most kGrowth per frame: 354 frames.
+const float kGrowth = 0.008, kBeside = 1.0 / 16.0, kNearlyPresent = 127.0 / 128.0 * LPV_PRESENT;
 
 // Avoids visible jumps: the irradiance that a receiver shows moves gradually towards the estimate from its own and its
 // neighbours' paths, and a new receiver fades in. Where nothing was shown before, it starts with the estimate of its
@@ -28,8 +28,8 @@ void show(uint index, inout LpvReceiver receiver, vec3 target) {
   if (isFirst && receiver.paths >= enoughPaths) receivers[index].state = receiver.state & ~LPV_FIRST;
   bool arrives = mostChange == 0.0 || isFirst || largest <= mostChange * scale;
   receiver.shown = arrives ? target : receiver.shown + change * (mostChange * scale / largest);
-  float presence =
-      mostChange == 0.0 ? LPV_PRESENT : clamp(receiver.presence * kGrowth, kFirstPresence, LPV_PRESENT);
+  float grown = receiver.presence + kGrowth * (receiver.presence + kBeside);
+  float presence = mostChange == 0.0 ? LPV_PRESENT : min(grown, LPV_PRESENT);
   receiver.presence = arrives ? presence : min(presence, kNearlyPresent);
   receivers[index].shown = receiver.shown;
   receivers[index].presence = receiver.presence;
