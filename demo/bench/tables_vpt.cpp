@@ -4,10 +4,10 @@
 // published number of pixels times samples, as a path tracer's work is proportional to both. A picture that would take
 // too long ends early and is scaled likewise.
 #include "bench/provenance.hpp"
+#include "bench/vpt_estimators.hpp"
 #include "bench/vpt_series.hpp"
 
 #include "measure/image_errors.hpp"
-#include "settings/deviations.hpp"
 
 #include <fmt/core.h>
 
@@ -26,37 +26,13 @@ constexpr double kMostSecondsATable = 15.0;
 /// The picture used to compare estimators: espresso, with equal absorption and scattering behind a refracting boundary.
 constexpr std::size_t kEstimatorPicture = 14;
 
-struct Estimator {
-  std::string name;
-  PathDeviations deviations;
-};
-
-/// For the corrected estimator, each deviation alone turned on. For the published one, each alone turned off, because
-/// the pictures were made with all others on.
-std::vector<Estimator> estimatorsOf(Fidelity fidelity) {
-  const bool published = fidelity != Fidelity::corrected;
-  RenderSettings corrected, original;
-  applyFidelity(original, Fidelity::original);
-  std::vector<Estimator> estimators{{"corrected", corrected.path.deviations}, {"original", original.path.deviations}};
-  if (published) std::swap(estimators[0], estimators[1]);
-  for (const Deviation& deviation : allDeviations()) {
-    if (!std::string_view(deviation.name).starts_with("path.")) continue;
-    RenderSettings alone = published ? original : corrected;
-    const bool turned = !deviation.isOn(alone);
-    deviation.turn(alone, turned);
-    estimators.push_back(
-        {fmt::format("{}{}", deviation.name, published ? (turned ? " too" : " off") : ""), alone.path.deviations});
-  }
-  return estimators;
-}
-
 /// Compares the estimators with the first one, corrected or published: time, and error of the picture. Fills "summary"
 /// and "estimators"; incomplete if interrupted.
 PartFolder::Json measureEstimators(const VptTablesInput& input, glm::ivec2 size, double mostSeconds) {
   const VptPicture& picture = vptPictures()[kEstimatorPicture];
   const Scene scene = loadVptScene(picture, input.fidelity);
   const std::uint32_t samples = vptSamples(picture, input.scale);
-  const std::vector<Estimator> estimators = estimatorsOf(input.fidelity);
+  const std::vector<VptEstimator> estimators = vptEstimators(input.fidelity);
   PartFolder::Json made{{"summary", ""}, {"estimators", PartFolder::Json::array()}};
   std::string summary;
   if (interrupted()) return made;
@@ -73,7 +49,7 @@ PartFolder::Json measureEstimators(const VptTablesInput& input, glm::ivec2 size,
       picture.label, picture.figure, estimators[0].name, reference.statistics.samples, "", "ms a sample", "NRMSE",
       "bias", "time", "loop turns");
   double firstMs = 0.0, firstTurns = 0.0;
-  for (const Estimator& estimator : estimators) {
+  for (const VptEstimator& estimator : estimators) {
     if (interrupted()) break;
     const VptResult result =
         renderVpt(input.context, input.programs, picture, scene, size, samples, mostSeconds, estimator.deviations);

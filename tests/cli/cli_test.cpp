@@ -384,13 +384,15 @@ TEST_F(CommandLine, AWindowWithoutADisplayIsAMissingCapability) {
 }
 
 TEST_F(CommandLine, InterruptedWalkKeepsWholePicturesAndItsTable) {
+  // As soon as there are pictures: how long that takes depends on what the driver has compiled before.
   const RunResult result =
-      run("timeout --signal=INT 3 '" LUCERNA_BINARY "' walk " + scene() + " --keys " + path("path.txt") + " --record " +
-          path("out") + " --frames 100000 --size 320x180 --json " + path("walk.json"));
-  EXPECT_EQ(result.exitCode, 124) << result.err;  // timeout's own code; the program ends by itself after the signal
+      run("'" LUCERNA_BINARY "' walk " + scene() + " --keys " + path("path.txt") + " --record " + path("out") +
+          " --frames 100000 --size 320x180 --json " + path("walk.json") + " & pid=$!; for i in $(seq 6000); do [ -e " +
+          path("out") + "/frame_0003.png ] && break; sleep 0.01; done; kill -INT $pid; wait $pid");
+  EXPECT_EQ(result.exitCode, 130) << result.err;
   ASSERT_TRUE(fs::exists(path("walk.json"))) << result.err;
   const int frames = json("walk.json").at("frames");
-  EXPECT_GT(frames, 0);
+  EXPECT_GE(frames, 3);
   EXPECT_EQ(std::distance(fs::directory_iterator(path("out")), fs::directory_iterator()), frames);
   for (const auto& entry : fs::directory_iterator(path("out"))) EXPECT_EQ(lucerna::readBitmap(entry.path()).width, 320);
 }

@@ -311,7 +311,7 @@ TEST_F(RadiosityCorrected, AgreesWithThePathTracer) {
     return json("c.json")["relative_bias"].get<double>();
   };
   const std::string cornell = LUCERNA_SOURCE_DIR "/assets/cornell/cornell.json";
-  draw(cornell, "path", "--spp 512");
+  draw(cornell, "path", "--spp 128");
   EXPECT_LT(std::abs(bias(cornell, "--set radiosity.edge=0.1 --set radiosity.resolution=32")), 0.012);
 
   // A court under the sun: pillars go on under its floor, beams lie in them and end in its walls. What runs on inside
@@ -343,7 +343,7 @@ TEST_F(RadiosityCorrected, AgreesWithThePathTracer) {
   obj.close();
   const std::string camera = "--camera -1.8,1.9,1.8,1,0,-1,70 ",
                     coarse = camera + "--set radiosity.edge=0.6 --set radiosity.resolution=32 ";
-  draw(path("court.obj"), "path", camera + "--spp 512");
+  draw(path("court.obj"), "path", camera + "--spp 128");
   EXPECT_LT(std::abs(bias(path("court.obj"), coarse)), 0.02);
   EXPECT_LT(bias(path("court.obj"), coarse + "--deviation radiosity.centroid=on"),
             -0.045);  // -0.054: what the right one must not be

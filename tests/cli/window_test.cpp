@@ -189,17 +189,25 @@ TEST_F(Window, TheCursorMeansThePixelThatItIsIn) {
   EXPECT_NE(magnified("corner.png"), magnified("below.png"));
 }
 
-// Counts a pixel instead of the picture, and lobes, boxes and voxels in the scene.
+// Counts a pixel instead of the picture, and lobes, boxes and voxels in the scene. The short form has one that counts
+// and two that are drawn into the scene.
 TEST_F(Window, DebugViewsOfTheSceneItself) {
-  write("input.txt",
-        "1 key R\n3 save frame.png\n4 touch Debug view\n5 touch Debug view/count of\n6 touch Debug view/count of: "
-        "surfaces a pixel\n7 save overdraw.png\n8 touch Debug view/count of\n9 touch Debug view/count of: "
-        "visits a ray\n10 save visits.png\n10 touch Debug view/white is\n11 touch Debug view/count of\n12 touch Debug "
-        "view/count of: nothing\n"
-        "13 touch Debug view/in the scene\n14 touch Debug view/in the scene: lobes of cells\n15 save lobes.png\n"
-        "15 touch Debug view/cascade\n15 touch Debug view/at most\n"
-        "16 touch Debug view/in the scene\n17 touch Debug view/in the scene: geometry volume\n18 save geometry.png\n"
-        "19 touch Debug view/in the scene\n20 touch Debug view/in the scene: visibility voxels\n21 save voxels.png\n");
+  const bool isLong = lucerna::test::longTests();
+  const std::string first =
+      "1 key R\n3 save frame.png\n4 touch Debug view\n5 touch Debug view/count of\n6 touch Debug view/count of: "
+      "surfaces a pixel\n7 save overdraw.png\n";
+  const std::string visits =
+      "8 touch Debug view/count of\n9 touch Debug view/count of: visits a ray\n10 save visits.png\n"
+      "10 touch Debug view/white is\n";
+  const std::string lobes =
+      "11 touch Debug view/count of\n12 touch Debug view/count of: nothing\n"
+      "13 touch Debug view/in the scene\n14 touch Debug view/in the scene: lobes of cells\n15 save lobes.png\n";
+  const std::string geometry =
+      "15 touch Debug view/cascade\n15 touch Debug view/at most\n16 touch Debug view/in the scene\n"
+      "17 touch Debug view/in the scene: geometry volume\n18 save geometry.png\n";
+  const std::string voxels =
+      "19 touch Debug view/in the scene\n20 touch Debug view/in the scene: visibility voxels\n21 save voxels.png\n";
+  write("input.txt", first + (isLong ? visits : "") + lobes + (isLong ? geometry : "") + voxels);
   const RunResult result =
       play(path("input.txt"), "--technique lpv --set lpv.transport=propagate --set lpv.blocking=on", "", "700x400");
   ASSERT_EQ(result.exitCode, 0) << result.err;
@@ -216,8 +224,9 @@ TEST_F(Window, DebugViewsOfTheSceneItself) {
     return part;
   };
   const auto frame = pixels("frame.png");
-  for (const char* name : {"overdraw.png", "visits.png", "lobes.png", "geometry.png", "voxels.png"})
-    EXPECT_NE(pixels(name), frame) << name;
+  std::vector<const char*> names{"overdraw.png", "lobes.png", "voxels.png"};
+  if (isLong) names.insert(names.end(), {"visits.png", "geometry.png"});
+  for (const char* name : names) EXPECT_NE(pixels(name), frame) << name;
 }
 
 // Disks where light is kept, while the picture below them stays as it is.
@@ -248,8 +257,8 @@ TEST_F(Window, LampsAreDraggedAlongTheirAxes) {
   write("path.txt", "p 0 1 4 d 0 0 -1 u 0 1 0 f 60\np 0 1 4 d 0 0 -1 u 0 1 0.001 f 60\n");
   // The lamp is in the middle of the picture, 490 x 700 beside the panel; the axis goes to the right from there.
   write("input.txt",
-        "1 key R\n2 touch Light\n3 touch Light/move lamps in the picture\n60 save before.png\n61 cursor 265 350\n"
-        "62 press left\n64 cursor 365 350\n66 release left\n70 save after.png\n");
+        "1 key R\n2 touch Light\n3 touch Light/move lamps in the picture\n30 save before.png\n31 cursor 265 350\n"
+        "32 press left\n34 cursor 365 350\n36 release left\n40 save after.png\n");
   const RunResult result = play(path("input.txt"), "--technique direct", "", "800x700");
   ASSERT_EQ(result.exitCode, 0) << result.err;
   EXPECT_EQ(glComplaints(result.err), "");
@@ -265,8 +274,8 @@ TEST_F(Window, LampsAreDraggedAlongTheirAxes) {
 // all of it: its last value is the end of its range, and what the cursor does after the release changes nothing.
 TEST_F(Window, TheSunIsDraggedThroughAllSteps) {
   write("input.txt",
-        "1 key R\n2 touch Light\n3 touch Light/sun azimuth\n60 press left\n62 cursor 590 360\n64 cursor 600 400\n"
-        "66 cursor 610 420\n68 cursor 799 420\n70 release left\n72 cursor 520 350\n74 save after.png\n");
+        "1 key R\n2 touch Light\n3 touch Light/sun azimuth\n30 press left\n32 cursor 590 360\n34 cursor 600 400\n"
+        "36 cursor 610 420\n38 cursor 799 420\n40 release left\n42 cursor 520 350\n44 save after.png\n");
   const RunResult result = play(path("input.txt"), "--technique lpv", "", "800x700");
   ASSERT_EQ(result.exitCode, 0) << result.err;
   EXPECT_EQ(glComplaints(result.err), "");

@@ -222,7 +222,11 @@ TEST_F(MediaDeviations, TheOriginalIsBiasedOnTheSlabAndTheCorrectedIsNot) {
   }
 }
 
-TEST_F(MediaDeviations, AllOfThemInTheWhiteFurnace) {
+/// A suite of its own: thirteen programs for few samples each, which Mesa's compiler does not optimize
+/// (tests/CMakeLists.txt).
+class MediaFurnaceOfDeviations : public MediaDeviations {};
+
+TEST_F(MediaFurnaceOfDeviations, AllOfThemInTheWhiteFurnace) {
   // A ball of n 1.33 full of a medium without absorption, tau 4 across, in an environment of 1: 1 wherever one looks.
   Scene scene;
   scene.media = {homogeneous(glm::dvec3(2.0), glm::dvec3(0.0), 0.6)};

@@ -156,6 +156,10 @@ TEST_F(MediaInterfaces, NestedAndOverlappingDielectricsKeepEnergy) {
                   inside ? "inside" : "outside", e.energy, e.energyError, exact);
       EXPECT_NEAR(e.energy, exact, 3.5 * e.energyError + 2e-5 * exact);
       EXPECT_LT(e.energyError, 2.5e-4 * exact);
+      for (int c = 0; c < 3; ++c) {
+        EXPECT_NEAR(e.mean[c], exact, 3.5 * e.error[c] + 2e-5 * exact) << "channel " << c;
+        EXPECT_LT(e.error[c], 1e-2 * exact) << "channel " << c;
+      }
     }
 }
 

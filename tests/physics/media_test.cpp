@@ -71,7 +71,7 @@ TEST_F(MediaPhysics, ChannelsOfAnyRatioAreUnbiased) {
   Scene scene = slab(medium, 1.0, 1.0);
   scene.environment->picture->at(0, 0) = glm::vec3(1.0f, 1.0f, 0.0f);
   scene.environment->picture->at(0, 1) = glm::vec3(0.0f, 0.0f, 1.0f);
-  const auto s = measure(scene, 1024);
+  const auto s = measure(scene, 640);
   expectExact("R tau 0.1", s.mean.x, s.meanError.x, .047120, 0.002);
   expectExact("R tau 100", s.mean.y, s.meanError.y, .752721, 0.004);
   expectExact("T of the absorber", s.mean.z, s.meanError.z, std::exp(-0.7), 0.004);
@@ -86,49 +86,30 @@ TEST_F(MediaPhysics, ChannelsOfAnyRatioAreUnbiased) {
 }
 
 TEST_F(MediaPhysics, FurnacesStayAtOne) {
-  // White: nothing absorbs, so that whatever is inside of what, every pixel is 1. Thermal: emission sigma_a n^2 B with
-  // an environment of B gives B for any shape, albedo, phase function, density and colour, and n^2 B to a camera inside
-  // of a dielectric.
-  const auto furnace = [&](const char* what, Scene scene, double exact) {
+  // Emission sigma_a n^2 B with an environment of B gives B for any shape, albedo, phase function, density and colour.
+  // Of white furnaces, where nothing absorbs: media_interfaces_test.cpp, also with the camera inside.
+  const auto furnace = [&](const char* what, Scene scene) {
     scene.environment = constantEnvironment(1.0);
-    const bool white = scene.media[0].absorption == glm::vec3(0.0f);
-    const auto s = measure(scene, white ? 256 : 512);
-    // Paths that total reflection catches in the shell of glass meet roulette, so that energy is 1 in the mean alone;
-    // without such a shell it is in each path (SlabsReflectAndTransmitAsTabled, and the furnace in
-    // media_deviations_test.cpp).
+    const auto s = measure(scene, 512);
     std::printf("%-44s %.6f %.6f %.6f +- %.1e  %.2f s\n", what, s.mean.x, s.mean.y, s.mean.z, s.meanError.x, seconds_);
     for (int c = 0; c < 3; ++c) {
-      EXPECT_NEAR(s.mean[c], exact, 3.5 * s.meanError[c] + 2e-5 * exact) << what << " channel " << c;
-      EXPECT_LT(s.meanError[c], 1e-2 * exact) << what;
+      EXPECT_NEAR(s.mean[c], 1.0, 3.5 * s.meanError[c] + 2e-5) << what << " channel " << c;
+      EXPECT_LT(s.meanError[c], 1e-2) << what;
     }
   };
-  const Medium white = homogeneous({2.0, 9.0, 0.1}, glm::dvec3(0.0), 0.6);
   Medium warm = homogeneous({1.0, 3.0, 0.0}, {0.5, 0.1, 2.0}, -0.4);
-  Scene nested;
-  nested.media = {white, homogeneous(glm::dvec3(5.0), glm::dvec3(0.0), -0.5)};
-  addSphere(nested, glm::dvec3(0.0), 1.0, 3, addBoundary(nested, Bsdf::dielectric, 1.5, -1, 2));
-  addSphere(nested, glm::dvec3(0.1, 0.0, 0.0), 0.8, 3, addBoundary(nested, Bsdf::dielectric, 1.33, 0, 3));
-  addSphere(nested, glm::dvec3(0.9, 0.1, 0.0), 0.6, 3,
-            addBoundary(nested, Bsdf::dielectric, 2.0, 1, 1));  // overlaps, and lies below
-  nested.cameras = {cameraAt({0.2, 0.3, 5.0}, glm::dvec3(0.2, 0.1, 0.0), 0.4)};
-  furnace("white, nested and overlapping dielectrics", nested, 1.0);
-
-  Scene inside = nested;
-  inside.cameras = {cameraAt({0.1, 0.0, 0.0}, {1.0, 0.2, 0.3}, 0.8)};
-  furnace("white, camera in the milk of n 1.33", inside, 1.33 * 1.33);
-
   Scene thermal;
   warm.emission = warm.absorption;
   thermal.media = {warm};
   addSphere(thermal, glm::dvec3(0.0), 1.0, 3, addBoundary(thermal, Bsdf::none, 1.0, 0));
   thermal.cameras = {cameraAt({0.2, 0.3, 5.0}, glm::dvec3(0.2, 0.1, 0.0), 0.3)};
-  furnace("thermal", thermal, 1.0);
+  furnace("thermal", thermal);
 
   Scene glowing = thermal;
   glowing.materials[0].bsdf = Bsdf::dielectric;
   glowing.materials[0].ior = 1.5f;
   glowing.media[0].emission = 2.25f * warm.absorption;
-  furnace("thermal, n 1.5", glowing, 1.0);
+  furnace("thermal, n 1.5", glowing);
 
   Scene smoke = thermal;
   smoke.media[0].phase = PhaseFunction::rayleigh;
@@ -138,7 +119,7 @@ TEST_F(MediaPhysics, FurnacesStayAtOne) {
   grid.max = glm::dvec3(0.9);
   for (int i = 0; i < 512; ++i) grid.density.push_back(static_cast<float>((i * 7) % 10) * (i % 3 ? 0.4f : 0.0f));
   smoke.media[0].grid = grid;
-  furnace("thermal, density grid, Rayleigh", smoke, 1.0);
+  furnace("thermal, density grid, Rayleigh", smoke);
 }
 
 TEST_F(MediaPhysics, DensityGridsOfOneOpticalDepthAreOneSlab) {
@@ -267,9 +248,8 @@ TEST_F(MediaPhysics, ParallelLightAndReciprocity) {
 }
 
 TEST_F(MediaPhysics, ExtremesAreFiniteUnbiasedAndBounded) {
+  // Optical depths of 1e-3, 100 and 1000: media_extremes_test.cpp.
   const SlabRow rows[] = {
-      {1, 1e-3, 0, 1, 1.0, 4.9975038e-4, 1.0 - 4.9975038e-4, 1024},
-      {1, 100, 0, 1, 1.0, .983447, .016553, 16},
       {.5, 1, .99, 1, 1.0, 4.30e-4, .60503, 512},
       {.5, 1, -.99, 1, 1.0, .22227, .39539, 512},
       {.9, 1, .001, 1, 1.0, .267168, .591865, 256},
