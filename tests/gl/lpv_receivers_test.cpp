@@ -1102,7 +1102,7 @@ TEST_F(LpvReceiversKept, WhatIsSeenChangesByNoMoreThanTheBoundAndArrives) {
   EXPECT_GT(free.largestStep, 0.025);  // else there is nothing to bound
   // 0.004, and the step by which the finer grid's blending moves over the coarser one.
   EXPECT_LT(bounded.largestStep, 0.012);
-  EXPECT_LT(bounded.framesToArrive, 300);  // 64 to fade in, the others to change by up to 60 %
+  EXPECT_LT(bounded.framesToArrive, 380);  // 354 to fade in, and what is left of the changes
   EXPECT_LT(largestDifference(bounded.last, free.last), 1e-6);
 }
 

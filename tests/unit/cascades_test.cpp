@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 namespace lucerna {
@@ -170,6 +171,47 @@ TEST(Cascades, AllButTheCoarsestMoveByTwoCells) {
       }
   }
   EXPECT_TRUE(oddCoarsest);
+}
+
+// What is in view and within reach lies at least 1.5 cells inside the grid, whichever way the camera looks.
+TEST(Cascades, WhatReceiversReachIsWithinTheirGrid) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const auto direction = [&] {
+    for (;;)
+      if (const glm::dvec3 d(uniform(random), uniform(random), uniform(random)); glm::length(d) > 0.1)
+        return glm::normalize(d);
+  };
+  for (const bool held : {false, true})
+    for (int i = 0; i < 2000; ++i) {
+      CascadeSettings settings{32, 3, 4.0, 2.0, 0.8};
+      settings.heldInScene = held;
+      const Bounds scene = cube(glm::dvec3(3.0), 140.0);
+      Camera camera;
+      camera.position = 60.0 * glm::dvec3(uniform(random), uniform(random), uniform(random));
+      camera.direction = direction();
+      camera.up = direction();
+      camera.verticalFov = 0.3 + 0.9 * std::abs(uniform(random));
+      const double aspect = 1.3 + 0.5 * uniform(random);
+      const auto cascades = placeReceiverCascades(settings, scene, camera, aspect);
+      EXPECT_EQ(cascades[0].centre, camera.position);
+      const glm::dvec3 right = glm::normalize(glm::cross(camera.direction, camera.up)),
+                       up = glm::cross(right, camera.direction);
+      const double tangent = std::tan(0.5 * camera.verticalFov);
+      for (const Cascade& c : cascades)
+        for (int j = 0; j < 20; ++j) {
+          const auto side = [&] { return j < 8 ? std::copysign(1.0, uniform(random)) : uniform(random); };
+          const glm::dvec3 ray = glm::normalize(camera.direction + tangent * (side() * aspect * right + side() * up));
+          const glm::dvec3 point = camera.position + ray * (c.reach * (j < 4 ? 1.0 : std::abs(uniform(random))));
+          if (held && glm::any(glm::greaterThan(glm::abs(point - 3.0), glm::dvec3(70.0)))) continue;
+          const glm::dvec3 place = (point - c.minimum()) / c.cellSize, rest = glm::min(place, 32.0 - place);
+          EXPECT_GE(std::min({rest.x, rest.y, rest.z}), 1.5 - 1e-9);
+        }
+    }
+  // 0.8 * 16 cells c + sqrt(13.5^2 - (0.8 * 16)^2 (1 - c^2)), c = 1 / sqrt(1 + tan^2 30 degrees (1 + (16/9)^2)).
+  Camera camera;
+  camera.verticalFov = std::numbers::pi / 3.0;
+  EXPECT_NEAR(placeReceiverCascades({32, 2, 2.0}, Bounds{}, camera, 16.0 / 9.0)[0].reach, 17.6, 0.05);
 }
 
 }  // namespace

@@ -12,8 +12,8 @@ uniform float fullPaths;   // paths from which a receiver counts fully and is no
 uniform uint enoughPaths;  // an LPV_FIRST receiver follows its estimate without limit until it has this many
 // largest change per frame of the shown irradiance, relative to the larger of old and target; 0: no limit
 uniform float mostChange;
-// A new receiver's weight grows per frame by kGrowth of what it is and of what those beside it may have at least. What it
-// takes away from a much brighter one then darkens a surface by at most kGrowth per frame: 354 frames.
+// A new receiver's weight grows per frame by kGrowth of what it is and of what those beside it may have at least. What
+// it takes away from a much brighter one then darkens a surface by at most kGrowth per frame. It takes 354 frames.
 const float kGrowth = 0.008, kBeside = 1.0 / 16.0, kNearlyPresent = 127.0 / 128.0 * LPV_PRESENT;
 
 // Avoids visible jumps: the irradiance that a receiver shows moves gradually towards the estimate from its own and its
