@@ -18,6 +18,7 @@ namespace {
 constexpr GLuint kSlotsBuffer = 1, kKeptBuffer = 2, kWorkBeforeBuffer = 3;  // GL_SHADER_STORAGE_BUFFER
 constexpr GLuint kSlotsUnit = 0, kKeysUnit = 1, kSeenUnit = 6;
 constexpr std::uint32_t kSegmentsOfAll = 64;  // of a path that meets no receivers; it misses a share of albedo^64
+constexpr float kWiderBand = 1.6f;  // than lpv.blend: cascades differ more where they are not joined
 constexpr float kFullPaths = 256.0f;  // from here on: full weight, no averaging with neighbours
 constexpr std::uint32_t kSoftwareTurns = 2000, kMostTurns = 1u << 16;  // like the path tracer's, less one segment
 // Of a lane, approximately (gl/pieces.hpp): of a path, or of gather four rays, or one ray and nodes of the tree.
@@ -151,7 +152,8 @@ void LpvReceivers::forget() {
 }
 
 void LpvReceivers::place(const Inputs& inputs) {
-  const shared::LpvConstants lpv = lpvConstants(settings_, inputs.cascades, referenceIrradiance_);
+  shared::LpvConstants lpv = lpvConstants(settings_, inputs.cascades, referenceIrradiance_);
+  lpv.blendBand = std::min(kWiderBand * lpv.blendBand, 1.0f);
   std::swap(lpvConstants_, lpvConstantsBefore_);
   lpvConstants_.upload(0, sizeof lpv, &lpv);
   if (cascades_.empty()) lpvConstantsBefore_.upload(0, sizeof lpv, &lpv);

@@ -106,7 +106,7 @@ struct LpvSettings {
   int samples = 512;  ///< likewise: paths of a receiver while light and geometry stand still
   /// For receivers: largest relative change per frame of the shown irradiance while the camera moves or paths are
   /// added; 0: no limit.
-  float mostChange = 0.004f;
+  float mostChange = 0.0025f;
   Storage storage = Storage::half;
   /// The compute gather also runs bricks without light; the same bits, for tests and measurements.
   bool everyBrick = false;

@@ -36,7 +36,7 @@ void main() {
       receivers[index].third = hit.barycentrics.y;
       bool known;
       receivers[index].shown = receivedIrradiance(surface.position + receiving.rayOrigin, surface.normal, known);
-      receivers[index].presence = known ? 0.0 : LPV_PRESENT;
+      receivers[index].presence = 0.0;
       receivers[index].state = (surface.front ? LPV_FRONT : 0u) | (known ? 0u : LPV_FIRST);
     }
   }

@@ -10,11 +10,11 @@ layout(LPV_FORMAT, binding = 0) writeonly uniform image3D lpvReceived;
 layout(binding = 0) uniform usamplerBuffer lpvSlots;
 uniform float fullPaths;   // paths from which a receiver counts fully and is no longer averaged
 uniform uint enoughPaths;  // an LPV_FIRST receiver follows its estimate without limit until it has this many
-// largest change per frame of the shown irradiance, relative to the larger of old and target; 0: no limit
+// largest change per frame of the shown irradiance, relative to what it is or a quarter of its target; 0: no limit
 uniform float mostChange;
 // A new receiver's weight grows per frame by kGrowth of what it is and of what those beside it may have at least. What
-// it takes away from a much brighter one then darkens a surface by at most kGrowth per frame. It takes 354 frames.
-const float kGrowth = 0.008, kBeside = 1.0 / 16.0, kNearlyPresent = 127.0 / 128.0 * LPV_PRESENT;
+// it takes away from a much brighter one then darkens a surface by at most kGrowth per frame. It takes 522 frames.
+const float kGrowth = 0.008, kBeside = 1.0 / 64.0, kNearlyPresent = 127.0 / 128.0 * LPV_PRESENT;
 
 // Avoids visible jumps: the irradiance that a receiver shows moves gradually towards the estimate from its own and its
 // neighbours' paths, and a new receiver fades in. Where nothing was shown before, it starts with the estimate of its
@@ -22,8 +22,8 @@ const float kGrowth = 0.008, kBeside = 1.0 / 16.0, kNearlyPresent = 127.0 / 128.
 void show(uint index, inout LpvReceiver receiver, vec3 target) {
   vec3 change = target - receiver.shown;
   float largest = max(max(abs(change.x), abs(change.y)), abs(change.z));
-  float scale =
-      max(max(max(receiver.shown.x, receiver.shown.y), receiver.shown.z), max(max(target.x, target.y), target.z));
+  float scale = max(max(max(receiver.shown.x, receiver.shown.y), receiver.shown.z),
+                    0.25 * max(max(target.x, target.y), target.z));
   bool isFirst = (receiver.state & LPV_FIRST) != 0u;
   if (isFirst && receiver.paths >= enoughPaths) receivers[index].state = receiver.state & ~LPV_FIRST;
   bool arrives = mostChange == 0.0 || isFirst || largest <= mostChange * scale;
