@@ -129,16 +129,21 @@ GpuScene::GpuScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabi
         glm::vec3(0.5 * mesh->bounds.extent()),     mesh->firstIndex};
     const auto first = scene.indices.begin() + mesh->firstIndex;
     indices.insert(indices.end(), first, first + mesh->indexCount);
-    (isMasked(mesh) ? masked_ : opaque_).push_back(draw);
+    (isMasked(mesh) ? all_.masked_ : all_.opaque_).push_back(draw);
     if (!isMasked(mesh)) opaqueIndexCount_ = static_cast<std::uint32_t>(indices.size());
   }
-  CHECK(masked_.empty() || needs.alphaMasks, "{} masked meshes", masked_.size());
+  CHECK(all_.masked_.empty() || needs.alphaMasks, "{} masked meshes", all_.masked_.size());
 
   vertices_ = gl::Buffer("scene vertices", scene.vertices.size() * sizeof(Vertex), scene.vertices.data(),
                          gl::Usage::staticDraw);
   if (indices.empty()) throwBadInput("{}: nothing but boundaries of media", scene.file.string());
-  indices_ = gl::Buffer("scene indices", indices.size() * sizeof(std::uint32_t), indices.data(), gl::Usage::staticDraw);
-  vertexArray_ = gl::VertexArray("scene", vertices_, sizeof(Vertex), kAttributes, &indices_);
+  uploadIndices("scene", indices, all_);
+}
+
+void GpuScene::uploadIndices(const std::string& name, const std::vector<std::uint32_t>& indices, Selection& to) const {
+  to.indices_ =
+      gl::Buffer(name + " indices", indices.size() * sizeof(std::uint32_t), indices.data(), gl::Usage::staticDraw);
+  to.vertexArray_ = gl::VertexArray(name, vertices_, sizeof(Vertex), kAttributes, &to.indices_);
 }
 
 gl::ShaderFlags GpuScene::materialFlags(bool masked) const {
@@ -176,14 +181,15 @@ void GpuScene::bindSurface(const gl::Program& program, const Surface& surface) c
 void GpuScene::drawRange(const Draw& draw) const { gl::drawIndexedTriangles(draw.firstIndex, draw.indexCount); }
 
 void GpuScene::draw(const SurfacePrograms& programs, const View& view, const Selection* only) const {
-  (only ? only->vertexArray_ : vertexArray_).bind();
+  const Selection& drawn = only ? *only : all_;
+  drawn.vertexArray_.bind();
   const bool isotropic = !view.anisotropic && isotropic_;
   if (isotropic) isotropic_->bind(UNIT_DIFFUSE);
   for (const bool masked : {false, true}) {
-    const std::vector<Draw>& all = masked ? (only ? only->masked_ : masked_) : (only ? only->opaque_ : opaque_);
-    if (all.empty()) continue;
+    const std::vector<Draw>& meshes = masked ? drawn.masked_ : drawn.opaque_;
+    if (meshes.empty()) continue;
     std::vector<std::pair<float, const Draw*>> order;
-    for (const Draw& draw : all) {
+    for (const Draw& draw : meshes) {
       if (view.clipFromWorld && outsideFrustum(*view.clipFromWorld, draw.centre, draw.halfExtent)) continue;
       float distance = 0.0f;
       if (view.viewPoint) {
@@ -206,14 +212,14 @@ void GpuScene::draw(const SurfacePrograms& programs, const View& view, const Sel
 }
 
 void GpuScene::drawDepth(const SurfacePrograms& programs) const {
-  vertexArray_.bind();
+  all_.vertexArray_.bind();
   if (opaqueIndexCount_ > 0) {
     programs.opaque->use();
     drawRange({0, opaqueIndexCount_, 0, {}, {}, 0});
   }
-  if (masked_.empty()) return;
+  if (all_.masked_.empty()) return;
   programs.masked->use();
-  for (const Draw& draw : masked_) {
+  for (const Draw& draw : all_.masked_) {
     textures_[static_cast<std::size_t>(surfaces_[static_cast<std::size_t>(draw.surface)].maskTexture)].bind(UNIT_MASK);
     drawRange(draw);
   }
@@ -251,7 +257,7 @@ GpuScene::Selection GpuScene::covering(const glm::mat4& clipFromWorld, int size)
   std::vector<std::uint32_t> kept;
   kept.reserve(scene_->indices.size() / 2);
   for (const bool masked : {false, true})
-    for (const Draw& draw : masked ? masked_ : opaque_) {
+    for (const Draw& draw : masked ? all_.masked_ : all_.opaque_) {
       Draw part = draw;
       part.firstIndex = static_cast<std::uint32_t>(kept.size());
       for (std::uint32_t i = draw.firstInScene; i < draw.firstInScene + draw.indexCount; i += 3) {
@@ -262,16 +268,12 @@ GpuScene::Selection GpuScene::covering(const glm::mat4& clipFromWorld, int size)
       part.indexCount = static_cast<std::uint32_t>(kept.size()) - part.firstIndex;
       if (part.indexCount > 0) (masked ? selection.masked_ : selection.opaque_).push_back(part);
     }
-  if (kept.empty()) return selection;
-  selection.indices_ =
-      gl::Buffer("scene indices of a map", kept.size() * sizeof(std::uint32_t), kept.data(), gl::Usage::staticDraw);
-  selection.vertexArray_ =
-      gl::VertexArray("scene for a map", vertices_, sizeof(Vertex), kAttributes, &selection.indices_);
+  if (!kept.empty()) uploadIndices("scene for a map", kept, selection);
   return selection;
 }
 
 std::size_t GpuScene::gpuBytes() const {
-  std::size_t bytes = vertices_.bytes() + indices_.bytes() + (white_ ? white_->bytes() : 0);
+  std::size_t bytes = vertices_.bytes() + all_.gpuBytes() + (white_ ? white_->bytes() : 0);
   for (const gl::Texture& texture : textures_) bytes += texture.bytes();
   return bytes;
 }

@@ -32,14 +32,32 @@ class GpuScene {
   /// Flags that every program with materials takes, masked or not.
   gl::ShaderFlags materialFlags(bool masked) const;
 
+  /// Triangles in the order in which they are drawn.
+  class Selection {
+   public:
+    std::size_t gpuBytes() const { return indices_.bytes(); }
+    std::size_t triangleCount() const { return indices_.bytes() / (3 * sizeof(std::uint32_t)); }
+
+   private:
+    friend class GpuScene;
+    struct Draw {  ///< of a mesh
+      std::uint32_t firstIndex, indexCount;
+      int surface;
+      glm::vec3 centre, halfExtent;
+      std::uint32_t firstInScene;  ///< of Scene::indices
+    };
+    gl::Buffer indices_;
+    gl::VertexArray vertexArray_;
+    std::vector<Draw> opaque_, masked_;
+  };
+
   /// Draws the meshes inside `clipFromWorld`'s frustum (all if null), nearest first as seen from `viewPoint` (in mesh
-  /// order if null).
+  /// order if null); `only`: these triangles of them.
   struct View {
     const glm::mat4* clipFromWorld = nullptr;
     const glm::vec3* viewPoint = nullptr;
     bool anisotropic = true;  ///< filter colours as the settings say; false: what is drawn is not looked at
   };
-  class Selection;
   void draw(const SurfacePrograms& programs, const View& view, const Selection* only = nullptr) const;
   /// Only positions for opaque meshes, in one call; masked meshes with their masks.
   void drawDepth(const SurfacePrograms& programs) const;
@@ -63,38 +81,22 @@ class GpuScene {
     float normalScale = 0.0f;  ///< 0: no normal map
     float metallic = 0.0f, roughness = -1.0f;  ///< factors of a MetalMap; these values: none
   };
-  struct Draw {
-    std::uint32_t firstIndex, indexCount;
-    int surface;
-    glm::vec3 centre, halfExtent;
-    std::uint32_t firstInScene;  ///< of Scene::indices
-  };
+  using Draw = Selection::Draw;
+  /// Makes buffer and vertex array of `to`, whose draws are known.
+  void uploadIndices(const std::string& name, const std::vector<std::uint32_t>& indices, Selection& to) const;
   void drawRange(const Draw& draw) const;
   void bindSurface(const gl::Program& program, const Surface& surface) const;
 
   const Scene* scene_;
   SceneNeeds needs_;
-  gl::Buffer vertices_, indices_;
-  gl::VertexArray vertexArray_;
+  gl::Buffer vertices_;
+  Selection all_;
   std::vector<gl::Texture> textures_;
   std::optional<gl::Texture> white_;
   std::optional<gl::Sampler> isotropic_;  ///< if textures are filtered anisotropically
   std::vector<Surface> surfaces_;
-  std::vector<Draw> opaque_, masked_;
   std::uint32_t opaqueIndexCount_ = 0;  ///< opaque meshes come first in the index buffer
   bool isSoftware_;  ///< the renderer
-};
-
-class GpuScene::Selection {
- public:
-  std::size_t gpuBytes() const { return indices_.bytes(); }
-  std::size_t triangleCount() const { return indices_.bytes() / (3 * sizeof(std::uint32_t)); }
-
- private:
-  friend class GpuScene;
-  gl::Buffer indices_;
-  gl::VertexArray vertexArray_;
-  std::vector<Draw> opaque_, masked_;
 };
 
 }  // namespace lucerna

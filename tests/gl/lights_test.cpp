@@ -4,8 +4,8 @@
 #include "base/log.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "render/renderer.hpp"
-#include "shared/frame.h"
 #include "support/gl_fixture.hpp"
+#include "support/sun_frame.hpp"
 
 #include <gtest/gtest.h>
 
@@ -271,12 +271,7 @@ TEST_F(LightsGl, TheSunsFluxCountsProjectedAreaAndItsSurfelsTrueArea) {
   scene.sun = DirectionalLight{{0, -1, 0}, glm::vec3(2.0f)};
   const GpuScene gpuScene(scene, analyse(scene), capabilities());
   const SunFrustum frustum = fitSunFrustum(scene, scene.sun->direction);
-  shared::FrameConstants frame{};
-  frame.sunClipFromWorld = glm::mat4(frustum.clipFromWorld);
-  frame.sunDirection = glm::vec3(scene.sun->direction);
-  frame.sunIrradiance = scene.sun->irradiance;
-  const gl::Buffer block("frame constants", sizeof frame, &frame, gl::Usage::staticDraw);
-  block.bindUniform(0);
+  const gl::Buffer frame = test::bindSunFrame(scene, frustum);
   ReflectiveShadowMap rsm(programs(), gpuScene, {256, ReflectiveShadowMap::Light::sun});
   const ReflectiveShadowMap::Outputs outputs = rsm.record(gpuScene, frustum);
   const Totals sum = totals(outputs);

@@ -9,6 +9,7 @@
 #include "support/lpv_on_gl.hpp"
 #include "support/rsm_maps.hpp"
 #include "support/small_scenes.hpp"
+#include "support/sun_frame.hpp"
 
 #include <algorithm>
 #include <array>
@@ -640,15 +641,9 @@ TEST_F(LpvDeviations, RsmFluxCosine) {
       s.size = 512;
       ReflectiveShadowMap rsm(library(), gpuScene, s);
       const SunFrustum frustum = fitSunFrustum(scene, scene.sun->direction);
-      shared::FrameConstants frame{};
-      frame.sunClipFromWorld = glm::mat4(frustum.clipFromWorld);
-      frame.sunDirection = glm::vec3(scene.sun->direction);
-      frame.sunIrradiance = scene.sun->irradiance;
-      const gl::Buffer constants("frame", sizeof frame, &frame, gl::Usage::staticDraw);
-      constants.bindUniform(0);
+      const gl::Buffer frame = test::bindSunFrame(scene, frustum);
       double sum = 0.0;
-      for (const glm::vec4& texel : rsm.record(gpuScene, frustum).flux.readRgba())
-        sum += static_cast<double>(texel.x);
+      for (const glm::vec4& texel : rsm.record(gpuScene, frustum).flux.readRgba()) sum += static_cast<double>(texel.x);
       return sum;
     };
     const double cosine = std::cos(tilt), right = flux("");

@@ -2,12 +2,12 @@
 #include "base/angles.hpp"
 #include "support/gl_fixture.hpp"
 #include "support/small_scenes.hpp"
+#include "support/sun_frame.hpp"
 
 #include "forward/sun_frustum.hpp"
 #include "lpv/light_propagation_volume.hpp"
 #include "rsm/reflective_shadow_map.hpp"
 #include "shared/bindings.h"
-#include "shared/frame.h"
 
 #include <algorithm>
 #include <array>
@@ -37,12 +37,7 @@ class ReflectiveShadowMapGl : public test::SharedProgramsTest {
     ReflectiveShadowMap rsm(library(), gpuScene, {size});
     EXPECT_EQ(rsm.size(), size);
     const SunFrustum frustum = fitSunFrustum(scene, scene.sun->direction);
-    shared::FrameConstants frame{};
-    frame.sunClipFromWorld = glm::mat4(frustum.clipFromWorld);
-    frame.sunDirection = glm::vec3(scene.sun->direction);
-    frame.sunIrradiance = scene.sun->irradiance;
-    const gl::Buffer constants("frame", sizeof frame, &frame, gl::Usage::staticDraw);
-    constants.bindUniform(0);
+    const gl::Buffer frame = test::bindSunFrame(scene, frustum);
     const ReflectiveShadowMap::Outputs outputs = rsm.record(gpuScene, frustum);
     EXPECT_NEAR(outputs.texelArea, frustum.width * frustum.height / (static_cast<double>(size) * size),
                 1e-6 * outputs.texelArea);
@@ -140,12 +135,7 @@ TEST_F(ReflectiveShadowMapGl, TrianglesThatCoverNoTexelAreLeftOut) {
     }
     const Scene scene = builder.scene();
     const SunFrustum frustum = fitSunFrustum(scene, scene.sun->direction);
-    shared::FrameConstants frame{};
-    frame.sunClipFromWorld = glm::mat4(frustum.clipFromWorld);
-    frame.sunDirection = glm::vec3(scene.sun->direction);
-    frame.sunIrradiance = scene.sun->irradiance;
-    const gl::Buffer constants("frame", sizeof frame, &frame, gl::Usage::staticDraw);
-    constants.bindUniform(0);
+    const gl::Buffer frame = test::bindSunFrame(scene, frustum);
     constexpr int kSize = 64;
     std::array<std::vector<glm::vec4>, 2> flux, position;
     for (const bool software : {false, true}) {
@@ -159,7 +149,7 @@ TEST_F(ReflectiveShadowMapGl, TrianglesThatCoverNoTexelAreLeftOut) {
       flux[software] = outputs.flux.readRgba();
       position[software] = outputs.position.readRgba();
       if (!software) continue;
-      const std::size_t drawn = gpuScene.covering(frame.sunClipFromWorld, kSize).triangleCount();
+      const std::size_t drawn = gpuScene.covering(glm::mat4(frustum.clipFromWorld), kSize).triangleCount();
       std::cout << "[ measured ] triangles drawn of 12000: " << drawn << "\n";
       EXPECT_LT(drawn, 6000u);
       EXPECT_GT(drawn, 1200u);

@@ -6,7 +6,7 @@
 #include "shared/lpv_receivers.h"
 layout(std140, binding = BLOCK_RECEIVERS) uniform LpvReceiverBlock { LpvReceiverConstants receiving; };
 
-// Unit of the irradiance in the texture: small, since it is stored times a weight that may be 1 / 8192.
+// Unit of the irradiance in the texture: small, since it is stored times a weight that begins at 1 / 8000 (store.comp).
 float receivedUnit() { return lpv.referenceIrradiance / 16.0; }
 
 int faceOf(int axis, float component) { return 2 * axis + (component < 0.0 ? 1 : 0); }
