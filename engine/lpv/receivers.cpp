@@ -15,11 +15,11 @@ namespace lucerna {
 
 namespace {
 
-constexpr GLuint kSlotsBuffer = 1, kKeptBuffer = 2, kWorkBeforeBuffer = 3;  // GL_SHADER_STORAGE_BUFFER
+// GL_SHADER_STORAGE_BUFFER
+constexpr GLuint kSlotsBuffer = 1, kKeptBuffer = 2, kAroundBuffer = 2, kWorkBeforeBuffer = 3;
 constexpr GLuint kSlotsUnit = 0, kKeysUnit = 1, kSeenUnit = 6;
 constexpr std::uint32_t kSegmentsOfAll = 64;  // of a path that meets no receivers; it misses a share of albedo^64
 constexpr float kWiderBand = 1.6f;  // than lpv.blend: cascades differ more where they are not joined
-constexpr float kFullPaths = 256.0f;  // from here on: full weight, no averaging with neighbours
 constexpr std::uint32_t kSoftwareTurns = 2000, kMostTurns = 1u << 16;  // like the path tracer's, less one segment
 // Of a lane, approximately (gl/pieces.hpp): of a path, or of gather four rays, or one ray and nodes of the tree.
 constexpr std::size_t kTurnsOfPath = 256;
@@ -105,6 +105,10 @@ LpvReceivers::LpvReceivers(gl::ProgramLibrary& programs, const gl::Capabilities&
   irradiance_ = gl::Texture("lpv received irradiance",
                             settings.storage == LpvSettings::Storage::full ? gl::Format::rgba32f : gl::Format::rgba16f,
                             glm::ivec3(settings.cascades.cells, settings.cascades.cells, layers), linear);
+  // An empty list is one point long: mark always has it bound.
+  aroundPoints_ = gl::Buffer("lpv points around the camera",
+                             static_cast<std::size_t>(std::max(settings.around, 1)) * sizeof(shared::LpvAroundPoint),
+                             nullptr, gl::Usage::dynamicCopy);
   ring_ = std::make_unique<gl::ReadBackRing>("lpv receiver counts", sizeof kNoWork);
 
   // Select the light that paths carry, and the programs of every transport.
@@ -125,6 +129,8 @@ LpvReceivers::LpvReceivers(gl::ProgramLibrary& programs, const gl::Capabilities&
   if (settings.transport == LpvTransport::rays)
     paths_ = &programs.loadCompute("lpv paths", "lpv/receivers/paths.comp",
                                    with(rays, {{"CACHED", cached_}, {"FROM_CELLS", 0}}));
+  if (settings.around > 0)
+    around_ = &programs.loadCompute("lpv points around the camera", "lpv/receivers/around.comp", rays);
   store_ = &programs.loadCompute("lpv store receivers", "lpv/receivers/store.comp", common);
   if (settings.transport == LpvTransport::gather)
     gather_ = std::make_unique<LightGather>(programs, capabilities, scene, origin, settings, light, scene_, common);
@@ -167,7 +173,8 @@ void LpvReceivers::place(const Inputs& inputs) {
       path_.maxScatterings, settings_.bounces == LpvSettings::kAllBounces ? kSegmentsOfAll : path_.maxScatterings);
   const glm::ivec2 size = inputs.visible.size();
   const std::size_t pixels = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
-  constants.markEvery = static_cast<std::uint32_t>((pixels + kKeyPixels - 1) / kKeyPixels);
+  constants.around = inputs.fades ? static_cast<std::uint32_t>(settings_.around) : 0;
+  constants.markEvery = static_cast<std::uint32_t>(pixels / (kKeyPixels - constants.around) + 1);
   constants_.upload(0, sizeof constants, &constants);
 
   const Camera& camera = inputs.camera;
@@ -207,9 +214,24 @@ void LpvReceivers::keep() {
   pass.dispatchIndirect(work_[1]);
 }
 
+// Finds the points around the camera, unless they are those of the frame before.
+void LpvReceivers::lookAround() {
+  if (!around_ || aroundFrom_ == path_.cameraPosition) return;
+  const gl::ComputePass pass("lpv points around the camera", gl::Barrier::storage);
+  around_->use();
+  bindReceivers();
+  scene_.bind();
+  aroundPoints_.bindStorage(kReceiversBuffer);
+  pass.dispatch(glm::ivec3(settings_.around, 1, 1), glm::ivec3(64, 1, 1));
+  aroundFrom_ = path_.cameraPosition;
+}
+
 void LpvReceivers::mark(const Inputs& inputs) {
+  if (inputs.fades) lookAround();
   keys_.buffer().clear(0xffffffffu);
-  const glm::ivec3 size(inputs.visible.size(), 1), group(8, 8, 1);
+  const glm::ivec2 picture = inputs.visible.size();
+  const int rowsAround = inputs.fades ? (settings_.around + picture.x - 1) / picture.x : 0;
+  const glm::ivec3 size(picture.x, picture.y + rowsAround, 1), group(8, 8, 1);
   {
     const gl::ComputePass pass("lpv mark receivers", gl::Barrier::storage | gl::Barrier::textureFetch);
     mark_->use();
@@ -218,6 +240,7 @@ void LpvReceivers::mark(const Inputs& inputs) {
     slotTable_.bind(kSlotsUnit);
     seen_.buffer().bindStorage(kReceiversBuffer);
     keys_.buffer().bindStorage(kSlotsBuffer);
+    aroundPoints_.bindStorage(kAroundBuffer);
     pass.dispatch(size, group);
   }
   const gl::ComputePass pass("lpv claim receivers",
@@ -228,6 +251,7 @@ void LpvReceivers::mark(const Inputs& inputs) {
   slotTable_.bind(kSlotsUnit);
   keys_.bind(kKeysUnit);
   slotTable_.buffer().bindStorage(kSlotsBuffer);
+  aroundPoints_.bindStorage(kAroundBuffer);
   pass.dispatch(size, group);
 }
 
@@ -271,7 +295,6 @@ void LpvReceivers::store(float mostChange) {
   gl::clearToZero(textures, clearTexture_);
   const gl::ComputePass pass("lpv store receivers", gl::Barrier::textureFetch | gl::Barrier::textureUpdate);
   store_->use();
-  store_->set("fullPaths", kFullPaths);
   store_->set("enoughPaths", static_cast<unsigned>(std::min(settings_.samples, settings_.leastRays)));
   store_->set("mostChange", mostChange);
   bindReceivers();
@@ -363,7 +386,8 @@ double LpvReceivers::mostTurns() const {
 std::size_t LpvReceivers::gpuBytes() const {
   std::size_t bytes = scene_.gpuBytes() + lpvConstants_.bytes() + lpvConstantsBefore_.bytes() + constants_.bytes() +
                       pathConstants_.bytes() + lit_.bytes() + slotTable_.bytes() + keys_.bytes() + seen_.bytes() +
-                      irradiance_.bytes() + ring_->bytes() + (gather_ ? gather_->gpuBytes() : 0);
+                      irradiance_.bytes() + aroundPoints_.bytes() + ring_->bytes() +
+                      (gather_ ? gather_->gpuBytes() : 0);
   for (std::size_t i = 0; i < 2; ++i) bytes += receivers_[i].bytes() + work_[i].bytes();
   return bytes;
 }

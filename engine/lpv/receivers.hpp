@@ -28,6 +28,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace lucerna {
@@ -108,6 +109,7 @@ class LpvReceivers {
 
   void place(const Inputs& inputs);
   void keep();
+  void lookAround();
   void mark(const Inputs& inputs);
   void list(int target, bool countsFading = false);
   void light(int target);
@@ -130,10 +132,12 @@ class LpvReceivers {
   shared::PathConstants path_{};
   const gl::Program *mark_, *claim_, *keep_, *list_, *store_;
   const gl::Program* paths_ = nullptr;  ///< only for rays
+  const gl::Program* around_ = nullptr;  ///< only if Settings::around
+  std::optional<glm::vec3> aroundFrom_;  ///< position of the camera in the ray caster's coordinates
   std::unique_ptr<LightGather> gather_;  ///< only for gather
   gl::Buffer lpvConstants_,
       lpvConstantsBefore_;  ///< the second: the cascades to which irradiance_ belongs when an update begins
-  gl::Buffer constants_, pathConstants_, lit_;
+  gl::Buffer constants_, pathConstants_, lit_, aroundPoints_;
   std::array<gl::Buffer, 2> receivers_, work_;  ///< the second of each: before the cascades moved
   gl::BufferTexture slotTable_, keys_, seen_;
   gl::Texture irradiance_;

@@ -104,7 +104,10 @@ struct LpvSettings {
   int rays = 16;  ///< for LpvTransport::rays: paths per receiver and frame, 1, 2, 4 ... 64
   int leastRays = 64;  ///< likewise: minimum number of paths of a receiver in its first frame
   int samples = 512;  ///< likewise: paths of a receiver while light and geometry stand still
-  /// For receivers: largest relative change per frame of the shown irradiance while the camera moves or paths are
+  /// For receivers: directions around the camera in which surfaces get receivers before they come into view, so that a
+  /// turn does not flicker; 0: none.
+  int around = 1024;
+  /// Likewise: largest relative change per frame of the shown irradiance while the camera moves or paths are
   /// added; 0: no limit.
   float mostChange = 0.0025f;
   Storage storage = Storage::half;

@@ -221,6 +221,9 @@ const std::vector<Setting>& table() {
        "at least, of a receiver in its first frame", "", rebuild, kRays, ""},
       {"lpv.samples", number(FIELD(lpv.samples), 1, 1 << 24), "paths",
        "of a receiver while light and geometry are static", "", rebuild, kRays, ""},
+      {"lpv.around", number(FIELD(lpv.around), 0, 1 << 16), "directions",
+       "around the camera, in which surfaces have receivers before they come into view, while it moves", "", rebuild,
+       kReceivers, ""},
       {"lpv.most-change", number(FIELD(lpv.mostChange), 0.0, 1.0), "",
        "largest relative change of a receiver's light that is shown in a frame; 0: any", "", rebuild, kReceivers, ""},
       // Reflective shadow maps and their gather.

@@ -11,7 +11,7 @@ SHARED_BEGIN
 #define LPV_NOWHERE 0xfffffffeu   // the ray met nothing
 #define LPV_GATHERED 0xffffffu  // path count of a receiver whose light was gathered at once
 #define LPV_LANES 64          // per work group, one path each
-#define LPV_PRESENT 1.0
+#define LPV_FULL_PATHS 256.0  // from here on: full weight, no averaging with neighbours
 #define LPV_FRONT 1u
 #define LPV_FIRST 2u
 #define LPV_ALONE 4u  // of a point that keeps light of further bounces: it lights no other surface
@@ -29,8 +29,14 @@ struct LpvReceiver {
   vec3 normal;          // for shading, unit, on the visible side
   uint pixel;           // the pixel that created it
   vec3 shown;           // irradiance used by lookups: follows `irradiance` and that of its neighbours at a bounded rate
-  // how far it has faded in, 0 to LPV_PRESENT; LPV_PRESENT itself means that `shown` has also reached its target
-  float presence;
+  float presence;       // its weight in lookups: has faded in, and shows its target, where it is fullPresence()
+};
+
+struct LpvAroundPoint {
+  vec3 position;        // among the frame's positions
+  uint isThere;         // 0: the ray met nothing
+  vec3 normal;          // for shading, unit, on the visible side
+  uint padding;
 };
 
 struct LpvReceiverConstants {
@@ -40,7 +46,7 @@ struct LpvReceiverConstants {
   uint capacity;        // maximum number of receivers
   uint mostSegments;    // maximum per path
   uint markEvery;       // pixel stride, for pictures with more pixels than a key can tell apart
-  uint padding;
+  uint around;          // points around the camera that need receivers too
 };
 
 SHARED_END

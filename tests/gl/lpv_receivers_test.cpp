@@ -1132,6 +1132,121 @@ TEST_F(LpvReceiversKept, TurningChangesNothingThatIsSeen) {
   EXPECT_LT(largest, 1e-4);
 }
 
+/// Largest change of a block of 16x16 pixels, relative to it or, where it is dark, to the picture's mean.
+double largestStepOfBlocks(const Image& a, const Image& b) {
+  constexpr int kBlock = 16;
+  const auto grey = [](const glm::vec3& p) { return static_cast<double>(p.x + p.y + p.z); };
+  const double mean = kBlock * kBlock * grey(glm::vec3(meanOf(a)));
+  double largest = 0.0;
+  for (int y = 0; y < a.height; y += kBlock)
+    for (int x = 0; x < a.width; x += kBlock) {
+      double before = 0.0, change = 0.0;
+      for (int i = 0; i < kBlock * kBlock; ++i) {
+        const int column = x + i % kBlock, row = y + i / kBlock;
+        before += grey(a.at(column, row));
+        change += grey(b.at(column, row)) - grey(a.at(column, row));
+      }
+      largest = std::max(largest, std::abs(change) / std::max(before, mean));
+    }
+  return largest;
+}
+
+// Surfaces around the camera have receivers before it turns to them, so a turn shows nothing that is just being found.
+TEST_F(LpvReceiversKept, ATurnShowsWhatWasKnownBefore) {
+  // A ring of bays, lit by turns.
+  SceneBuilder builder;
+  const int grey = builder.material(glm::vec3(0.6f)), lamp = builder.material(glm::vec3(0.0f));
+  builder.materialAt(lamp).emission = glm::vec3(8.0f);
+  builder.plate({0, 0, 0}, {0, 0, 24}, {24, 0, 0}, grey);
+  for (int i = 0; i < 18; ++i) {
+    const double angle = glm::radians(20.0 * i);
+    const glm::dvec3 out(std::sin(angle), 0.0, -std::cos(angle)), along(out.z, 0.0, -out.x);
+    for (const double side : {1.0, -1.0})
+      builder.plate(6.0 * out + glm::dvec3(0.0, 2.0, 0.0) + 0.02 * side * along, {0, 4, 0}, side * 6.0 * out, grey);
+    if (i % 2 == 0) builder.plate(8.0 * out + 1.4 * along + glm::dvec3(0, 0.1, 0), 0.4 * out, 0.4 * along, lamp);
+  }
+  const Scene scene = builder.scene();
+  struct Turn {
+    double flicker = 0.0;
+    std::uint64_t receivers = 0;
+  };
+  const auto turn = [&](int around) {
+    RenderSettings s = settings(1, 64, Component::indirect);
+    s.lpv.around = around;
+    Renderer renderer(context(), library(), scene, s);
+    const auto camera = [](int i) {
+      const double yaw = glm::radians(2.0 * i);
+      return lookingAt({0.0, 2.0, 0.5}, glm::dvec3(0.0, 2.0, 0.5) + glm::dvec3(std::sin(yaw), -0.2, -std::cos(yaw)),
+                       0.6);
+    };
+    Turn result;
+    for (int i = 0; i < 20; ++i) result.receivers = frame(renderer, camera(0)).receivers;
+    for (int i = 1; i <= 45; ++i) {
+      renderer.render(camera(i));
+      const Image now = renderer.readRadiance();
+      renderer.render(camera(i), camera(i - 1));
+      result.flicker = std::max(result.flicker, largestStepOfBlocks(renderer.readRadiance(), now));
+    }
+    return result;
+  };
+  const Turn known = turn(1024), unknown = turn(0);
+  report("largest relative change of a block in a turn", known.flicker);
+  report("without points around the camera", unknown.flicker);
+  EXPECT_LT(known.flicker, 0.01);
+  EXPECT_GT(unknown.flicker, 0.01);
+  EXPECT_GT(known.receivers, 2 * unknown.receivers);
+}
+
+// In a closed cube every cell of every wall has a receiver in the coarsest cascades, in view or not, at a point of that
+// wall; the finer ones have those of what is seen.
+TEST_F(LpvReceiversKept, SurfacesAllAroundHaveReceivers) {
+  const Scene scene = furnace(glm::vec3(0.5f), glm::vec3(1.0f));
+  RenderSettings s = settings(1, 16);
+  s.lpv.cascades.cascades = 3;
+  s.lpv.cascades.cellSize = 0.42;  // 0.21, 0.105: a wall of 2 by 2 is cut into 6 by 6 and 10 by 10 cells
+  const auto count = [&](int around) {
+    s.lpv.around = around;
+    Renderer renderer(context(), library(), scene, s);
+    renderer.render(lookingAt({0.05, 0.02, 0.03}, {1.0, 0.1, 0.1}, 0.2));
+    renderer.drain();
+    std::array<std::array<int, 6>, 3> counts{};
+    for (const LpvReceivers::Shown& r : renderer.receivers()->shown()) {
+      const int axis = r.face / 2;
+      const float sign = r.face % 2 == 0 ? 1.0f : -1.0f;
+      EXPECT_NEAR(r.normal[axis], sign, 1e-5);
+      EXPECT_NEAR(r.position[axis], -sign, 1e-5);
+      ++counts[static_cast<std::size_t>(r.cascade)][static_cast<std::size_t>(r.face)];
+    }
+    return counts;
+  };
+  const auto all = count(4096), seen = count(0);
+  for (std::size_t face = 0; face < 6; ++face) {
+    EXPECT_EQ(all[2][face], 36) << face;
+    EXPECT_EQ(all[1][face], 100) << face;
+    EXPECT_EQ(all[0][face], seen[0][face]) << face;
+    EXPECT_EQ(seen[1][face] > 0 || seen[0][face] > 0, face == 1) << face;  // the wall at x = 1 faces -x
+  }
+}
+
+// Receivers with few paths still are enough of the finest cascade: coarser ones do not take their place.
+TEST_F(LpvReceiversKept, AFewPathsAreEnoughOfACascade) {
+  const Scene scene = test::openBox();
+  RenderSettings s = settings(1, 4);
+  s.lpv.rays = s.lpv.leastRays = 4;
+  Renderer renderer(context(), library(), scene, s);
+  const Camera camera = lookingAt({0.5, 0.3, -3.0}, {0.3, 0.2, -5.0}, 0.9);
+  renderer.renderToTheEnd(lookingAt({0.5, 0.3, 12.0}, {0.3, 0.2, -5.0}, 0.9));  // finds those of the coarser one
+  renderer.renderToTheEnd(camera);
+  int receivers = 0;
+  for (const glm::ivec2& pixel : {glm::ivec2(20, 20), glm::ivec2(32, 32), glm::ivec2(41, 13)})
+    for (const PixelShare& share : renderer.ask(context(), library(), scene, camera, pixel).shares) {
+      if (!share.name.starts_with("receiver")) continue;
+      ++receivers;
+      EXPECT_TRUE(share.name.ends_with("cascade 1")) << share.name << " " << share.weight.value_or(0.0);
+    }
+  EXPECT_GE(receivers, 6);
+}
+
 TEST_F(LpvReceiversKept, WithoutRoomReceiversAreLeftOutAndCounted) {
   // Triangles that face every way in every cell of a small grid, seen from all sides: more slots are asked for than
   // there is room (24 of a grid's 6 cells^3 by cells^2).

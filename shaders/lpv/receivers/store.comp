@@ -1,20 +1,19 @@
 // Writes the texture that the lookup filters: each receiver's irradiance at its cell and face, times its weight. The
-// weight grows with the number of paths, so that new receivers fade in among existing ones. A receiver with few paths
-// is averaged with its neighbours (same face, surfaces that lean the same way), weighted by their paths. This trades
-// noise for a little blur, and both vanish once the receiver has all its paths and stands for itself.
+// weight grows to what its number of paths is worth, slowly, so that new receivers fade in among others. A receiver
+// with few paths is averaged with its neighbours (same face, surfaces that lean the same way), weighted by their paths.
+// This trades noise for a little blur, and both vanish once the receiver has all its paths and stands for itself.
 layout(local_size_x = 64) in;
 #include "lpv/receivers/common.glsl"
 #include "lpv/receivers/work.glsl"
 layout(std430, binding = 0) restrict buffer LpvReceivers { LpvReceiver receivers[]; };
 layout(LPV_FORMAT, binding = 0) writeonly uniform image3D lpvReceived;
 layout(binding = 0) uniform usamplerBuffer lpvSlots;
-uniform float fullPaths;   // paths from which a receiver counts fully and is no longer averaged
 uniform uint enoughPaths;  // an LPV_FIRST receiver follows its estimate without limit until it has this many
 // largest change per frame of the shown irradiance, relative to what it is or a quarter of its target; 0: no limit
 uniform float mostChange;
 // A new receiver's weight grows per frame by kGrowth of what it is and of what those beside it may have at least. What
 // it takes away from a much brighter one then darkens a surface by at most kGrowth per frame. It takes 522 frames.
-const float kGrowth = 0.008, kBeside = 1.0 / 64.0, kNearlyPresent = 127.0 / 128.0 * LPV_PRESENT;
+const float kGrowth = 0.008, kBeside = 1.0 / 64.0, kNearly = 127.0 / 128.0;
 
 // Avoids visible jumps: the irradiance that a receiver shows moves gradually towards the estimate from its own and its
 // neighbours' paths, and a new receiver fades in. Where nothing was shown before, it starts with the estimate of its
@@ -29,14 +28,14 @@ void show(uint index, inout LpvReceiver receiver, vec3 target) {
   bool arrives = mostChange == 0.0 || isFirst || largest <= mostChange * scale;
   receiver.shown = arrives ? target : receiver.shown + change * (mostChange * scale / largest);
   float grown = receiver.presence + kGrowth * (receiver.presence + kBeside);
-  float presence = mostChange == 0.0 ? LPV_PRESENT : min(grown, LPV_PRESENT);
-  receiver.presence = arrives ? presence : min(presence, kNearlyPresent);
+  float full = fullPresence(receiver);
+  receiver.presence = min(mostChange == 0.0 ? full : grown, arrives ? full : kNearly * full);
   receivers[index].shown = receiver.shown;
   receivers[index].presence = receiver.presence;
 }
 
 vec3 withNeighbours(LpvReceiver receiver) {
-  float share = 1.0 - float(receiver.paths) / fullPaths;
+  float share = 1.0 - float(receiver.paths) / LPV_FULL_PATHS;
   if (share <= 0.0) return receiver.irradiance;
   int cascade = receiver.cell.w / LPV_FACES;
   vec3 sum = float(receiver.paths) * receiver.irradiance;
@@ -64,10 +63,7 @@ void main() {
   int cascade = receiver.cell.w / LPV_FACES;
   ivec3 place = receiver.cell.xyz - receiving.firstCell[cascade].xyz;
   if (any(lessThan(place, ivec3(0))) || any(greaterThanEqual(place, ivec3(lpv.shape.x)))) return;
-  // At least a quarter: times 1/8, the least share of a point's own cell, that still exceeds the lookup's threshold.
-  // Otherwise regions with few paths would stay black.
-  float counts = clamp(float(receiver.paths) / fullPaths, 0.25, 1.0);
   show(index, receiver, withNeighbours(receiver));
   imageStore(lpvReceived, ivec3(place.xy, receiver.cell.w * lpv.shape.x + place.z),
-             min(receiver.presence, counts) * vec4(receiver.shown / receivedUnit(), 1.0));
+             receiver.presence * vec4(receiver.shown / receivedUnit(), 1.0));
 }

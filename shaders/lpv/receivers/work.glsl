@@ -8,4 +8,9 @@ layout(std430, binding = 5) restrict buffer LpvReceiverWork {
   uint frame;
 } work;
 
+// The weight in lookups of a receiver that has faded in. At least a quarter: times 1/8, the least share of a point's
+// own cell, that is enough of a cascade for the lookup (kEnough). Otherwise coarser receivers would replace those with
+// few paths.
+float fullPresence(LpvReceiver receiver) { return clamp(float(receiver.paths) / LPV_FULL_PATHS, 0.25, 1.0); }
+
 uint receiverCount() { return min(work.wanted, receiving.capacity); }
