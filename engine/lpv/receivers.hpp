@@ -3,8 +3,8 @@
 //
 // Irradiance along a surface is smooth even in a corner, where a field of radiance in space is not; so surface points
 // are interpolated. Each cell of each cascade has six slots, one per axis and sign; a slot holds one real point that
-// the camera has seen and whose normal points that way. Points are kept while the camera moves, and their paths
-// accumulate while light and geometry are static.
+// the camera has seen, or in the coarsest cascades would see if it turned, and whose normal points that way. Points are
+// kept while the camera moves, and their paths accumulate while light and geometry are static.
 //
 // In: a scene (PathScene), cascades, the visible surfaces, the lights' maps for gather. Out: a layered 3D texture that
 // shaders/lpv/receivers/lookup.glsl interpolates: irradiance in W per square scene unit. Light: emissive surfaces, the

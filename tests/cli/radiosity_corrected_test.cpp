@@ -68,7 +68,7 @@ class RadiosityCorrected : public ::testing::Test {
 
 TEST_F(RadiosityCorrected, SettingsAndDeviationsAreTakenAlikeByRenderAndSolve) {
   const std::string all =
-      "--set radiosity.edge=0.7 --set radiosity.resolution=24 --set radiosity.solver=anderson --set "
+      "--set radiosity.edge=1.0 --set radiosity.resolution=24 --set radiosity.solver=anderson --set "
       "radiosity.error=1e-4 --set radiosity.seed=5 --set radiosity.exact-pixels=6 --set radiosity.part-distance=2 "
       "--set radiosity.parts=4 --set radiosity.products=50 --set radiosity.memory=100 --set radiosity.repair=off --set "
       "radiosity.refinements=1 --set radiosity.steep=0.2 --deviation radiosity.fixed-orientation=on ";
@@ -90,7 +90,7 @@ TEST_F(RadiosityCorrected, SettingsAndDeviationsAreTakenAlikeByRenderAndSolve) {
   // Each does something: another number of patches, or another picture.
   std::set<std::string> pictures{lucerna::readFileText(path("own.pfm"))};
   for (const char* other :
-       {"--set radiosity.edge=1.2", "--set radiosity.resolution=32",
+       {"--set radiosity.edge=1.6", "--set radiosity.resolution=32",
         "--set radiosity.seed=6 --deviation radiosity.fixed-orientation=off", "--set radiosity.exact-pixels=0",
         "--set radiosity.part-distance=0", "--set radiosity.repair=on", "--deviation radiosity.published-map=on",
         "--deviation radiosity.fixed-orientation=off"}) {
@@ -165,7 +165,7 @@ TEST_F(RadiosityCorrected, KilledRunsGoOnToTheSameBits) {
   expectWorks(solve("room.obj", "whole.lit", kLong + "--json '" + path("w.json") + "'"));
   const int all = json("w.json")["hemicubes"];
   int refinedRows = 0;
-  for (const std::size_t size : {100'000u, 200'000u, 700'000u, 900'000u, 1'400'000u}) {  // rows: 820 kB, refined 1.5 MB
+  for (const std::size_t size : {200'000u, 900'000u, 1'400'000u}) {  // rows: 820 kB, refined 1.5 MB
     const std::string out = "k.lit";
     ASSERT_EQ(killedAt(size, solve("room.obj", out, kLong)).exitCode, kKilled) << size;
     EXPECT_FALSE(fs::exists(path(out)));
@@ -290,7 +290,7 @@ TEST_F(RadiosityCorrected, WithLittleMemoryTheAnswerIsTheSame) {
   // Killed while rows are made, it goes on with those that there are, to the same bits.
   const std::string little = kLong + "--memory 0.05 ";
   expectWorks(solve("room.obj", "whole.lit", little + "--json '" + path("w.json") + "'"));
-  for (const std::size_t size : {200'000u, 500'000u, 800'000u}) {
+  for (const std::size_t size : {200'000u, 800'000u}) {
     ASSERT_EQ(killedAt(size, solve("room.obj", "k.lit", little)).exitCode, kKilled) << size;
     expectWorks(solve("room.obj", "k.lit", little + "--json '" + path("k.json") + "'"));
     EXPECT_LT(json("k.json")["hemicubes"].get<int>(), json("w.json")["hemicubes"].get<int>());
