@@ -136,7 +136,8 @@ int record(const WalkOptions& options, const Host& host, const gl::Context& cont
 
   watchForInterrupt();
   renderer.render(path.view(first));  // warm-up: drivers finish shaders on first use; its times are dropped
-  if (options.flicker) renderer.renderToTheEnd(path.view(first));  // flicker of a walk, not of a cut's first frames
+  constexpr int kFramesAtRest = 64;  // flicker of a walk from where one has stood, not of a cut's first frames
+  for (int i = 0; options.flicker && i < kFramesAtRest; ++i) renderer.render(path.view(first));
   Progress progress("walk", static_cast<int>(part.last() - part.first()), options.common.quiet);
   std::vector<double> frameSeconds;
   std::optional<int> before;

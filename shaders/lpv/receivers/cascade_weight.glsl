@@ -9,5 +9,5 @@ float receivedCascadeWeight(int k, vec3 position) {
        fromBorder = min(place, float(lpv.shape.x) - place);
   float inside = clamp(min(fromBorder.x, min(fromBorder.y, fromBorder.z)) - 0.5, 0.0, 1.0);
   float rest = cascade.blendHalf - distance(position, cascade.blendCentre);
-  return inside * clamp(rest / (lpv.blendBand * cascade.blendHalf), 0.0, 1.0);
+  return inside * smoothstep(0.0, lpv.blendBand * cascade.blendHalf, rest);
 }

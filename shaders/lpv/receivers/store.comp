@@ -23,6 +23,7 @@ void show(uint index, inout LpvReceiver receiver, vec3 target) {
   float largest = max(max(abs(change.x), abs(change.y)), abs(change.z));
   float scale = max(max(max(receiver.shown.x, receiver.shown.y), receiver.shown.z),
                     0.25 * max(max(target.x, target.y), target.z));
+  scale = max(scale, 1e-3 * receivedUnit());  // otherwise it never reaches black
   bool isFirst = (receiver.state & LPV_FIRST) != 0u;
   if (isFirst && receiver.paths >= enoughPaths) receivers[index].state = receiver.state & ~LPV_FIRST;
   bool arrives = mostChange == 0.0 || isFirst || largest <= mostChange * scale;
