@@ -967,7 +967,7 @@ class LpvReceiversKept : public LpvReceiversGl {
     renderer.drain();
     return renderer.receivers()->counts();
   }
-  static double luminanceOf(const Renderer& renderer) {
+  static double brightnessOf(const Renderer& renderer) {
     const glm::dvec3 mean = meanOf(renderer.readRadiance());
     return (mean.x + mean.y + mean.z) / 3.0;
   }
@@ -1252,13 +1252,13 @@ TEST_F(LpvReceiversKept, WhatTurnsOutBlackArrives) {
     return frames;
   };
   EXPECT_LT(settle(0.8), 1000);
-  EXPECT_GT(luminanceOf(renderer), 0.01);
+  EXPECT_GT(brightnessOf(renderer), 0.01);
   for (const double x : {0.4, 0.0, -0.4, -0.8}) look(x);  // here cells have receivers of both sides
   const int frames = settle(-1.2);
   report("frames until black", frames);
   EXPECT_GT(frames, 100);  // light was shown there first
   EXPECT_LT(frames, 1500);
-  EXPECT_EQ(luminanceOf(renderer), 0.0);
+  EXPECT_EQ(brightnessOf(renderer), 0.0);
 }
 
 // Receivers with few paths still are enough of the finest cascade: coarser ones do not take their place.
