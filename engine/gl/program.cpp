@@ -14,6 +14,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <map>
+#include <set>
 
 namespace lucerna::gl {
 
@@ -46,8 +47,8 @@ const char* suffixOf(GLenum stage) {
                                        : "comp";
 }
 
-/// A linked program's use of OpenGL's limits: lines "NAME VALUE" for GL_MAX_NAME, zeros omitted. Shared memory cannot
-/// be queried.
+/// A linked program's use of OpenGL's limits: lines "NAME VALUE" for GL_MAX_NAME, zeros omitted, and
+/// SAMPLER_TYPES_OF_A_UNIT, of which OpenGL allows one. Shared memory cannot be queried.
 std::string needsOf(GLuint program, const std::vector<std::pair<GLenum, std::string>>& texts) {
   struct Stage {
     GLenum referenced;
@@ -97,6 +98,7 @@ std::string needsOf(GLuint program, const std::vector<std::pair<GLenum, std::str
     raise("UNIFORM_BUFFER_BINDINGS", property(GL_UNIFORM_BLOCK, i, GL_BUFFER_BINDING) + 1);
     raise("UNIFORM_BLOCK_SIZE", property(GL_UNIFORM_BLOCK, i, GL_BUFFER_DATA_SIZE));
   }
+  std::map<GLint, std::set<GLenum>> typesOfUnit;  // two: OpenGL refuses to draw, Mesa's software renderer does not
   for (GLuint i = 0; i < countOf(GL_UNIFORM); ++i) {
     const GLint location = property(GL_UNIFORM, i, GL_LOCATION), count = property(GL_UNIFORM, i, GL_ARRAY_SIZE);
     if (location < 0) continue;  // in a block
@@ -110,7 +112,9 @@ std::string needsOf(GLuint program, const std::vector<std::pair<GLenum, std::str
     glGetUniformiv(program, location, &unit);
     add(GL_UNIFORM, i, image ? "IMAGE_UNIFORMS" : "TEXTURE_IMAGE_UNITS", count);
     raise(image ? "IMAGE_UNITS" : "TEXTURE_UNITS", unit + count);
+    for (GLint k = 0; sampler && k < count; ++k) typesOfUnit[unit + k].insert(type);
   }
+  for (const auto& [unit, types] : typesOfUnit) raise("SAMPLER_TYPES_OF_A_UNIT", static_cast<GLint>(types.size()));
   if (texts.front().first == GL_COMPUTE_SHADER) {
     std::array<GLint, 3> group{};
     glGetProgramiv(program, GL_COMPUTE_WORK_GROUP_SIZE, group.data());
