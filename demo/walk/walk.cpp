@@ -9,6 +9,7 @@
 #include "base/log.hpp"
 #include "commands.hpp"
 #include "gl/draw.hpp"
+#include "measure/image_errors.hpp"
 #include "measure/reference.hpp"
 #include "offers.hpp"
 #include "scene/key_frames.hpp"
@@ -39,32 +40,6 @@ std::pair<int, int> parseViews(const std::string& text, int viewCount) {
   if (std::sscanf(text.c_str(), "%d:%d%c", &first, &last, &rest) != 2 || first < 0 || last < first || last >= viewCount)
     throwBadInput("--views {}: expected FIRST:LAST within 0:{}", text, viewCount - 1);
   return {first, last};
-}
-
-// How much two pictures of one view differ: in their means, and in the 16x16 block that differs most, relative to its
-// own mean or, if it is dark, to the picture's.
-struct Change {
-  double mean = 0.0, block = 0.0;
-};
-
-Change changeBetween(const Image& before, const Image& after) {
-  constexpr int kBlock = 16;
-  const auto luminance = [](const glm::vec3& c) { return static_cast<double>(c.x + c.y + c.z) / 3.0; };
-  const glm::dvec3 means[2] = {meanOf(before), meanOf(after)};
-  const double reference = std::max(luminance(glm::vec3(means[0])), 1e-30);
-  Change change;
-  change.mean = std::abs(luminance(glm::vec3(means[1])) / reference - 1.0);
-  for (int y = 0; y + kBlock <= before.height; y += kBlock)
-    for (int x = 0; x + kBlock <= before.width; x += kBlock) {
-      double sum = 0.0, own = 0.0;
-      for (int j = 0; j < kBlock; ++j)
-        for (int i = 0; i < kBlock; ++i) {
-          own += luminance(before.at(x + i, y + j));
-          sum += luminance(after.at(x + i, y + j)) - luminance(before.at(x + i, y + j));
-        }
-      change.block = std::max(change.block, std::abs(sum) / std::max(own, reference * kBlock * kBlock));
-    }
-  return change;
 }
 
 nlohmann::ordered_json resultJson(const WalkOptions& options, const Host& host, const gl::Context& context,
@@ -141,7 +116,7 @@ int record(const WalkOptions& options, const Host& host, const gl::Context& cont
   Progress progress("walk", static_cast<int>(part.last() - part.first()), options.common.quiet);
   std::vector<double> frameSeconds;
   std::optional<int> before;
-  Change largest;
+  measure::Change largest;
   nlohmann::ordered_json changes = nlohmann::ordered_json::array();
   int done = 0;
   for (std::size_t i = part.first(); i < part.last() && !interrupted(); ++i, ++done) {
@@ -162,7 +137,7 @@ int record(const WalkOptions& options, const Host& host, const gl::Context& cont
       // The same view, once with its own volume and once with the previous view's: motion cancels, flicker remains.
       const Image now = renderer.readRadiance();
       renderer.render(cameras[i], path.view(*before));
-      const Change change = changeBetween(renderer.readRadiance(), now);
+      const measure::Change change = measure::changeBetween(renderer.readRadiance(), now);
       largest = {std::max(largest.mean, change.mean), std::max(largest.block, change.block)};
       changes.push_back({{"view", views[i]}, {"mean", change.mean}, {"block", change.block}});
     }

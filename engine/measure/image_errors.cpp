@@ -167,6 +167,24 @@ Image blockStandardErrors(const Image& standardError, int side) {
       [](const glm::dvec3& total, double n) { return glm::sqrt(total) / n; });
 }
 
+Change changeBetween(const Image& before, const Image& after, int blockSide) {
+  checkSizes(before, after);
+  const double mean = sum(meanOf(before)), pixels = static_cast<double>(blockSide) * blockSide;
+  Change change;
+  change.mean = std::abs(ratio(sum(meanOf(after)) - mean, mean));
+  for (int y = 0; y + blockSide <= before.height; y += blockSide)
+    for (int x = 0; x + blockSide <= before.width; x += blockSide) {
+      double own = 0.0, difference = 0.0;
+      for (int j = y; j < y + blockSide; ++j)
+        for (int i = x; i < x + blockSide; ++i) {
+          own += sum(before.at(i, j));
+          difference += sum(glm::dvec3(after.at(i, j)) - glm::dvec3(before.at(i, j)));
+        }
+      change.block = std::max(change.block, std::abs(ratio(difference, std::max(own, mean * pixels))));
+    }
+  return change;
+}
+
 PartErrors partErrorsOf(const Image& image, const Image& reference, const Image& standardError,
                         const std::vector<bool>& isPart, double ownBiasError) {
   checkSizes(image, reference);

@@ -76,6 +76,15 @@ Image blockMeans(const Image& image, int side);
 /// Standard errors of those means, assuming independent pixels.
 Image blockStandardErrors(const Image& standardError, int side);
 
+/// How much two pictures of one view differ, over the sum of their channels: flicker, where nothing but the light's
+/// own estimate differs.
+struct Change {
+  double mean = 0.0;  ///< of the mean, relative to the first picture's
+  double block = 0.0;  ///< largest of a whole block, relative to its own mean or, where it is dark, to the picture's
+};
+/// blockSide: in pixels; blocks that the picture's edge cuts off are left out.
+Change changeBetween(const Image& before, const Image& after, int blockSide = 16);
+
 /// Errors of a subset of the pixels, such as those lit by the sun.
 struct PartErrors {
   double pixels = 0.0;  ///< their share of the picture's pixels, 0..1

@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "lpv/bounce_points.hpp"
 #include "lpv/emission_points.hpp"
+#include "measure/image_errors.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "rays/light_table.hpp"
 #include "render/renderer.hpp"
@@ -1136,25 +1137,6 @@ TEST_F(LpvReceiversKept, TurningChangesNothingThatIsSeen) {
   EXPECT_LT(largest, 1e-4);
 }
 
-/// Largest change of a block of 16x16 pixels, relative to it or, where it is dark, to the picture's mean.
-double largestStepOfBlocks(const Image& a, const Image& b) {
-  constexpr int kBlock = 16;
-  const auto grey = [](const glm::vec3& p) { return static_cast<double>(p.x + p.y + p.z); };
-  const double mean = kBlock * kBlock * grey(glm::vec3(meanOf(a)));
-  double largest = 0.0;
-  for (int y = 0; y < a.height; y += kBlock)
-    for (int x = 0; x < a.width; x += kBlock) {
-      double before = 0.0, change = 0.0;
-      for (int i = 0; i < kBlock * kBlock; ++i) {
-        const int column = x + i % kBlock, row = y + i / kBlock;
-        before += grey(a.at(column, row));
-        change += grey(b.at(column, row)) - grey(a.at(column, row));
-      }
-      largest = std::max(largest, std::abs(change) / std::max(before, mean));
-    }
-  return largest;
-}
-
 // Surfaces around the camera have receivers before it turns to them, so a turn shows nothing that is just being found.
 TEST_F(LpvReceiversKept, ATurnShowsWhatWasKnownBefore) {
   // A ring of bays, lit by turns.
@@ -1189,7 +1171,7 @@ TEST_F(LpvReceiversKept, ATurnShowsWhatWasKnownBefore) {
       renderer.render(camera(i));
       const Image now = renderer.readRadiance();
       renderer.render(camera(i), camera(i - 1));
-      result.flicker = std::max(result.flicker, largestStepOfBlocks(renderer.readRadiance(), now));
+      result.flicker = std::max(result.flicker, measure::changeBetween(renderer.readRadiance(), now).block);
     }
     return result;
   };

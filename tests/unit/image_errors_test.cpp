@@ -151,6 +151,31 @@ TEST(Blocks, AreCutOffAtTheEdgeAndKeepTheMean) {
 
 // Lit pixels 1 -> 3, the others 2 -> 1: one figure (mean -> +14 %) would hide +200 % and -50 %. Squares: 3 * 4 against
 // 3 * 2 * 1.
+TEST(Blocks, ChangeRelativeToThemselvesOrToThePicturesMean) {
+  // 3 by 2 blocks and a rest of 8 columns; one block is dark.
+  Image before(56, 32);
+  for (int y = 0; y < 32; ++y)
+    for (int x = 0; x < 56; ++x) before.at(x, y) = x < 16 && y < 16 ? glm::vec3(0.01f) : glm::vec3(1.0f, 2.0f, 3.0f);
+  const double mean = (6.0 * (56 * 32 - 256) + 0.03 * 256) / (56 * 32);
+  const auto changed = [&](int x, int y, int columns, const glm::vec3& by) {
+    Image after = before;
+    for (int j = y; j < y + 16; ++j)
+      for (int i = x; i < x + columns; ++i) after.at(i, j) += by;
+    return changeBetween(before, after);
+  };
+  const glm::vec3 half(0.0f, 0.5f, 0.0f);
+  EXPECT_EQ(changeBetween(before, before).block, 0.0);
+  EXPECT_EQ(changeBetween(before, before).mean, 0.0);
+  EXPECT_NEAR(changed(16, 0, 16, half).block, 0.5 / 6.0, 1e-6);
+  EXPECT_NEAR(changed(16, 0, 16, -half).block, 0.5 / 6.0, 1e-6);
+  EXPECT_NEAR(changed(16, 0, 16, half).mean, 0.5 * 256 / (mean * 56 * 32), 1e-6);
+  EXPECT_NEAR(changed(24, 16, 16, half).block, 0.25 / 6.0, 1e-6);  // half of two blocks
+  EXPECT_NEAR(changed(0, 0, 16, half).block, 0.5 / mean, 1e-6);  // dark
+  EXPECT_NEAR(changed(16, 0, 16, {0.5f, -0.5f, 0.0f}).block, 0.0, 1e-6);
+  EXPECT_EQ(changed(48, 0, 8, half).block, 0.0);  // cut off by the edge
+  EXPECT_GT(changed(48, 0, 8, half).mean, 0.0);
+}
+
 TEST(Parts, HaveTheirOwnBiases) {
   const Image reference = picture({glm::vec3(1), glm::vec3(2), glm::vec3(2), glm::vec3(2)}),
               image = picture({glm::vec3(3), glm::vec3(1), glm::vec3(1), glm::vec3(2)});
