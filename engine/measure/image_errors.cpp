@@ -172,6 +172,8 @@ Change changeBetween(const Image& before, const Image& after, int blockSide) {
   const double mean = sum(meanOf(before)), pixels = static_cast<double>(blockSide) * blockSide;
   Change change;
   change.mean = std::abs(ratio(sum(meanOf(after)) - mean, mean));
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (!std::isfinite(change.mean)) return {kInfinity, kInfinity};
   for (int y = 0; y + blockSide <= before.height; y += blockSide)
     for (int x = 0; x + blockSide <= before.width; x += blockSide) {
       double own = 0.0, difference = 0.0;

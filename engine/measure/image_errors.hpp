@@ -76,8 +76,9 @@ Image blockMeans(const Image& image, int side);
 /// Standard errors of those means, assuming independent pixels.
 Image blockStandardErrors(const Image& standardError, int side);
 
-/// How much two pictures of one view differ, over the sum of their channels: flicker, where nothing but the light's
-/// own estimate differs.
+/// How much the sum of the channels differs between two pictures of one view: flicker, if nothing has changed but the
+/// estimate of the light. Both are infinite if only the first picture is black or if a pixel is not finite, so that a
+/// maximum over many pictures does not hide it.
 struct Change {
   double mean = 0.0;  ///< of the mean, relative to the first picture's
   double block = 0.0;  ///< largest of a whole block, relative to its own mean or, where it is dark, to the picture's

@@ -149,8 +149,6 @@ TEST(Blocks, AreCutOffAtTheEdgeAndKeepTheMean) {
   EXPECT_FLOAT_EQ(errors.at(2, 1).y, static_cast<float>(0.6 / std::sqrt(2.0)));
 }
 
-// Lit pixels 1 -> 3, the others 2 -> 1: one figure (mean -> +14 %) would hide +200 % and -50 %. Squares: 3 * 4 against
-// 3 * 2 * 1.
 TEST(Blocks, ChangeRelativeToThemselvesOrToThePicturesMean) {
   // 3 by 2 blocks and a rest of 8 columns; one block is dark.
   Image before(56, 32);
@@ -174,8 +172,18 @@ TEST(Blocks, ChangeRelativeToThemselvesOrToThePicturesMean) {
   EXPECT_NEAR(changed(16, 0, 16, {0.5f, -0.5f, 0.0f}).block, 0.0, 1e-6);
   EXPECT_EQ(changed(48, 0, 8, half).block, 0.0);  // cut off by the edge
   EXPECT_GT(changed(48, 0, 8, half).mean, 0.0);
+  // What cannot be told is not taken for no change.
+  for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    EXPECT_TRUE(std::isinf(changed(16, 0, 1, glm::vec3(bad)).block));
+    EXPECT_TRUE(std::isinf(changed(16, 0, 1, glm::vec3(bad)).mean));
+  }
+  const Image black(56, 32);
+  EXPECT_TRUE(std::isinf(changeBetween(black, before).block));
+  EXPECT_EQ(changeBetween(black, black).block, 0.0);
 }
 
+// Lit pixels 1 -> 3, the others 2 -> 1: one figure (mean -> +14 %) would hide +200 % and -50 %. Squares: 3 * 4 against
+// 3 * 2 * 1.
 TEST(Parts, HaveTheirOwnBiases) {
   const Image reference = picture({glm::vec3(1), glm::vec3(2), glm::vec3(2), glm::vec3(2)}),
               image = picture({glm::vec3(3), glm::vec3(1), glm::vec3(1), glm::vec3(2)});
