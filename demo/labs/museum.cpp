@@ -112,7 +112,10 @@ std::string museumHtml(const gl::Context& context, gl::ProgramLibrary& programs,
     const auto shown = [&](const std::string& deviation) {
       if (technique == "path") return traced(context, programs, scene, deviation, true, small ? 8 : 32);
       RenderSettings settings = settingsOf(technique, deviation);
-      if (small) settings.radiosity.solution.patches.longestEdge = 0.1;  // of a box of half a metre
+      if (small) {
+        settings.radiosity.solution.patches.longestEdge = 0.1;  // of a box of half a metre
+        settings.lpv.cascades.cells = 16;
+      }
       return Traced{rendered(context, programs, settings)};
     };
     if (!sound.contains(scene)) sound[scene] = shown("");

@@ -17,9 +17,9 @@ namespace {
 
 // GL_SHADER_STORAGE_BUFFER
 constexpr GLuint kSlotsBuffer = 1, kKeptBuffer = 2, kAroundBuffer = 2, kWorkBeforeBuffer = 3;
-constexpr GLuint kSlotsUnit = 0, kKeysUnit = 1, kSeenUnit = 6;
+constexpr GLuint kSlotsUnit = 7, kKeysUnit = 1, kSeenUnit = 6;  // where rays are traced, 0 has the materials
 constexpr std::uint32_t kSegmentsOfAll = 64;  // of a path that meets no receivers; it misses a share of albedo^64
-constexpr float kWiderBand = 1.6f;  // than lpv.blend: cascades differ more where they are not joined
+constexpr float kWiderBand = 2.0f;  // than lpv.blend: cascades differ more where they are not joined
 constexpr std::uint32_t kSoftwareTurns = 2000, kMostTurns = 1u << 16;  // like the path tracer's, less one segment
 // Of a lane, approximately (gl/pieces.hpp): of a path, or of gather four rays, or one ray and nodes of the tree.
 constexpr std::size_t kTurnsOfPath = 256;
@@ -269,6 +269,7 @@ void LpvReceivers::list(int target, bool countsFading) {
   list_->set("mostLit", static_cast<unsigned>(lit_.bytes() / sizeof(GLuint)));
   list_->set("pathTarget", static_cast<unsigned>(target));
   list_->set("countsFading", countsFading ? 1 : 0);
+  slotTable_.bind(kSlotsUnit);
   seen_.bind(kSeenUnit);
   pass.dispatchIndirect(work_[0]);
   lpvConstants_.bindUniform(BLOCK_LPV);
@@ -363,7 +364,8 @@ std::vector<LpvReceivers::Shown> LpvReceivers::shown() const {
   if (count == 0) return result;
   for (const shared::LpvReceiver& r : receivers_[0].read<shared::LpvReceiver>(count)) {
     if (r.triangle == LPV_UNPLACED || r.triangle == LPV_NOWHERE || r.paths == 0) continue;
-    result.push_back({r.position, r.normal, r.shown, glm::ivec3(r.cell), r.cell.w / LPV_FACES, r.cell.w % LPV_FACES});
+    result.push_back({r.position, r.normal, r.shown, r.presence, glm::ivec3(r.cell), r.cell.w / LPV_FACES,
+                      r.cell.w % LPV_FACES});
   }
   return result;
 }

@@ -78,6 +78,7 @@ class LpvReceivers {
   struct Shown {
     glm::vec3 position, normal;  ///< among the frame's positions; unit, on the side that is seen
     glm::vec3 irradiance;  ///< W per square scene unit
+    float presence;  ///< its weight, 0 to 1: a new one fades in
     glm::ivec3 cell;  ///< of its cascade, counted from the origin
     int cascade, face;
   };

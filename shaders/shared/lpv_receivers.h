@@ -15,11 +15,13 @@ SHARED_BEGIN
 #define LPV_FRONT 1u
 #define LPV_FIRST 2u
 #define LPV_ALONE 4u  // of a point that keeps light of further bounces: it lights no other surface
+#define LPV_BRIGHT 8u
 
 struct LpvReceiver {
   ivec4 cell;           // cell of its cascade, counted from the origin; w: cascade * LPV_FACES + face
   uint triangle;        // index in the scene
-  uint state;           // LPV_FRONT: seen from its front; LPV_FIRST: nothing was shown in its place before
+  uint state;           // LPV_FRONT: seen from its front; LPV_FIRST: nothing was shown in its place before; LPV_BRIGHT:
+                        // what was is much brighter than what a receiver beside it shows
   float second;         // weights of the second and third corner
   float third;
   vec3 irradiance;      // mean of all paths so far, W per square scene unit

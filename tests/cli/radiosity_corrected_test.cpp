@@ -68,7 +68,7 @@ class RadiosityCorrected : public ::testing::Test {
 
 TEST_F(RadiosityCorrected, SettingsAndDeviationsAreTakenAlikeByRenderAndSolve) {
   const std::string all =
-      "--set radiosity.edge=1.0 --set radiosity.resolution=24 --set radiosity.solver=anderson --set "
+      "--set radiosity.edge=1.4 --set radiosity.resolution=24 --set radiosity.solver=anderson --set "
       "radiosity.error=1e-4 --set radiosity.seed=5 --set radiosity.exact-pixels=6 --set radiosity.part-distance=2 "
       "--set radiosity.parts=4 --set radiosity.products=50 --set radiosity.memory=100 --set radiosity.repair=off --set "
       "radiosity.refinements=1 --set radiosity.steep=0.2 --deviation radiosity.fixed-orientation=on ";
@@ -90,7 +90,7 @@ TEST_F(RadiosityCorrected, SettingsAndDeviationsAreTakenAlikeByRenderAndSolve) {
   // Each does something: another number of patches, or another picture.
   std::set<std::string> pictures{lucerna::readFileText(path("own.pfm"))};
   for (const char* other :
-       {"--set radiosity.edge=1.6", "--set radiosity.resolution=32",
+       {"--set radiosity.edge=2.0", "--set radiosity.resolution=32",
         "--set radiosity.seed=6 --deviation radiosity.fixed-orientation=off", "--set radiosity.exact-pixels=0",
         "--set radiosity.part-distance=0", "--set radiosity.repair=on", "--deviation radiosity.published-map=on",
         "--deviation radiosity.fixed-orientation=off"}) {

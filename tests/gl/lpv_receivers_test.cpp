@@ -218,7 +218,7 @@ struct FloorAndWall {
   }
   /// Cells fine enough for what is interpolated between receivers to be well below what is allowed.
   static RenderSettings fine(RenderSettings s) {
-    s.lpv.cascades.cells = 32;
+    s.lpv.cascades.cells = 40;
     return s;
   }
   /// Over the floor, by midpoints in double: of what a point there gives, at d from `from`, per area.
@@ -1183,6 +1183,41 @@ TEST_F(LpvReceiversKept, ATurnShowsWhatWasKnownBefore) {
   EXPECT_GT(known.receivers, 2 * unknown.receivers);
 }
 
+// A receiver that is known to be much brighter than one beside it is given half the weight of others.
+TEST_F(LpvReceiversKept, WhatIsBrightBesideTheDarkIsAddedSlowly) {
+  // Cells of 1 on a floor; a screen between x < 0, which is dark, and x > 0, which a lamp lights.
+  SceneBuilder builder = test::inEnvironment(0.05f);
+  const int grey = builder.material(glm::vec3(0.6f)), lamp = builder.material(glm::vec3(0.0f));
+  builder.materialAt(lamp).emission = glm::vec3(40.0f);
+  builder.plate({0, 0, 0}, {0, 0, 16}, {16, 0, 0}, grey);
+  for (const double side : {1.0, -1.0}) builder.plate({0.02 * side, 3, 0}, {0, 6, 0}, {0, 0, side * 16}, grey);
+  builder.plate({3, 4, 0}, {3, 0, 0}, {0, 0, 3}, lamp);
+  RenderSettings s = settings(1, 256);
+  s.lpv.leastRays = 256;
+  s.lpv.cascades.cascades = 1;
+  s.lpv.cascades.cellSize = 1.0;
+  s.lpv.cascades.heldInScene = false;
+  s.lpv.around = 0;
+  Renderer renderer(context(), library(), builder.scene(), s);
+  // A square of the floor, from above, below the lamp and beside the screen.
+  const auto look = [&](double x, double side) {
+    const glm::dvec3 floor(x, 0.0, 0.5);
+    frame(renderer, lookingAt(floor + glm::dvec3(0.0, 3.0, 0.001), floor, 2.0 * std::atan(side / 6.0)));
+  };
+  look(-0.5, 0.2);
+  for (int i = 0; i < 4; ++i) look(1.5, 0.2);
+  look(1.5, 1.8);  // what comes into view now is new: x from 0.6 to 2.4
+  std::map<int, LpvReceivers::Shown> floor;
+  for (const LpvReceivers::Shown& receiver : renderer.receivers()->shown())
+    if (receiver.face == 2 && receiver.cell.z == 0) floor.emplace(receiver.cell.x, receiver);
+  ASSERT_TRUE(floor.contains(-1) && floor.contains(0) && floor.contains(2));
+  report("bright over dark", floor.at(0).irradiance.x / floor.at(-1).irradiance.x);
+  EXPECT_GT(floor.at(0).irradiance.x, 4.0f * floor.at(-1).irradiance.x);
+  EXPECT_GT(floor.at(-1).presence, floor.at(2).presence);
+  EXPECT_GT(floor.at(2).presence, 0.0f);
+  EXPECT_FLOAT_EQ(floor.at(0).presence, 0.5f * floor.at(2).presence);
+}
+
 // In a closed cube every cell of every wall has a receiver in the coarsest cascades, in view or not, at a point of that
 // wall; the finer ones have those of what is seen.
 TEST_F(LpvReceiversKept, SurfacesAllAroundHaveReceivers) {
@@ -1260,6 +1295,50 @@ TEST_F(LpvReceiversKept, AFewPathsAreEnoughOfACascade) {
       EXPECT_TRUE(share.name.ends_with("cascade 1")) << share.name << " " << share.weight.value_or(0.0);
     }
   EXPECT_GE(receivers, 6);
+}
+
+// Between cascades four times apart in brightness, what is shown changes by the same share of itself wherever the
+// camera is. A share s of the finer one leaves at least 1 + 3 min(s, 1 - s) of the darker one's light, so ds/dt over
+// that is constant.
+TEST_F(LpvReceiversKept, CascadesAreBlendedEvenly) {
+  SceneBuilder builder = test::inEnvironment(1.0f);
+  builder.plate({0, 0, 0}, {0, 0, 40}, {40, 0, 0}, builder.material(glm::vec3(0.5f)));
+  const Scene scene = builder.scene();
+  RenderSettings s = settings(1, 64);
+  s.lpv.cascades.cellSize = 2.0;
+  s.lpv.cascades.heldInScene = false;
+  Renderer renderer(context(), library(), scene, s);
+  const Camera camera = lookingAt({0.1, 1.5, 0.2}, {0.1, 0.0, -6.0}, 0.9);
+  renderer.renderToTheEnd(camera);
+  const double reach = placeReceiverCascades(s.lpv.cascades, scene.bounds, camera, 1.0)[0].reach;
+  const auto wayTo = [](double share) {
+    constexpr int kSteps = 10000;
+    double way = 0.0;
+    for (int i = 0; i < kSteps; ++i) {
+      const double x = share * (i + 0.5) / kSteps;
+      way += share / kSteps / (1.0 + 3.0 * std::min(x, 1.0 - x));
+    }
+    return way;
+  };
+  int between = 0;
+  double worst = 0.0;
+  for (int y = 24; y < 64; ++y) {
+    const PixelAnswer answer = renderer.ask(context(), library(), scene, camera, {32, y});
+    double finer = 0.0, all = 0.0;
+    for (const PixelShare& share : answer.shares)
+      if (share.name.starts_with("receiver")) {
+        all += share.weight.value();
+        if (share.name.ends_with("cascade 1")) finer += share.weight.value();
+      }
+    if (finer < 0.02 || finer > 0.98) continue;
+    ++between;
+    EXPECT_NEAR(all, 1.0, 1e-5);
+    const double way = (reach - glm::distance(answer.surface.value().position, camera.position)) / reach / 0.5;
+    worst = std::max(worst, std::abs(wayTo(finer) / wayTo(1.0) - way));
+  }
+  report("way through the band, largest difference", worst);
+  EXPECT_GE(between, 8);
+  EXPECT_LT(worst, 1e-3);
 }
 
 TEST_F(LpvReceiversKept, WithoutRoomReceiversAreLeftOutAndCounted) {

@@ -80,7 +80,7 @@ TEST_F(BenchProof, ErrorFallsWithSlopeMinusOneHalfOverTwoDecades) {
   };
   const auto paint = [&](std::uint32_t seed, std::uint32_t samples) {
     PathTracer::Settings settings;
-    settings.size = {64, 64};
+    settings.size = isLong ? glm::ivec2(64) : glm::ivec2(40);
     settings.diffuseOnly = settings.pixelCentres = true;
     settings.seed = seed;
     PathTracer t(context(), library(), scene, settings);

@@ -2,7 +2,7 @@
 layout(local_size_x = 1) in;
 #include "lpv/receivers/lookup.glsl"
 #include "forward/asked_parts.glsl"
-layout(binding = 0) uniform usamplerBuffer lpvSlots;
+layout(binding = 7) uniform usamplerBuffer lpvSlots;
 layout(std430, binding = 0) readonly buffer LpvReceivers { LpvReceiver receivers[]; };
 uniform vec3 askedPosition;
 uniform vec3 askedNormal;  // of the mesh

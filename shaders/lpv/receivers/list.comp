@@ -15,9 +15,23 @@ layout(std140, binding = BLOCK_RECEIVER_PATHS) uniform PathBlock { PathConstants
 layout(std430, binding = 0) restrict buffer LpvReceivers { LpvReceiver receivers[]; };
 layout(std430, binding = 1) writeonly restrict buffer LpvLit { uint lit[]; };
 layout(binding = 6) uniform usamplerBuffer lpvSeen;
+#include "lpv/receivers/neighbours.glsl"
 uniform uint mostLit;     // receivers
 uniform uint pathTarget;  // paths that each receiver should have
 uniform bool countsFading;  // also list receivers whose shown value is still fading in
+
+// Whether one of the neighbours that are shown is much darker. Those of this frame are not shown yet.
+bool isBrightBeside(ivec4 cell, vec3 light) {
+  const float kMuch = 4.0;
+  bool isBright = false;
+  for (int i = 0; i < kNeighbours; ++i) {
+    uint other;
+    if (!neighbourAt(cell, i, other) || !(receivers[other].presence > 0.0)) continue;
+    float shown = largestOf(receivers[other].shown);
+    isBright = isBright || (shown > 0.0 && kMuch * shown <= largestOf(light));
+  }
+  return isBright;
+}
 
 void main() {
   uint index = gl_GlobalInvocationID.x;
@@ -35,9 +49,11 @@ void main() {
       receivers[index].second = hit.barycentrics.x;
       receivers[index].third = hit.barycentrics.y;
       bool known;
-      receivers[index].shown = receivedIrradiance(surface.position + receiving.rayOrigin, surface.normal, known);
+      vec3 before = receivedIrradiance(surface.position + receiving.rayOrigin, surface.normal, known);
+      receivers[index].shown = before;
       receivers[index].presence = 0.0;
-      receivers[index].state = (surface.front ? LPV_FRONT : 0u) | (known ? 0u : LPV_FIRST);
+      receivers[index].state = (surface.front ? LPV_FRONT : 0u) | (known ? 0u : LPV_FIRST) |
+                               (isBrightBeside(receivers[index].cell, before) ? LPV_BRIGHT : 0u);
     }
   }
   if (triangle == LPV_NOWHERE) return;

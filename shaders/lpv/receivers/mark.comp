@@ -9,7 +9,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "lpv/receivers/work.glsl"
 #include "lpv/receivers/cascade_weight.glsl"
 #include "forward/visible.glsl"
-layout(binding = 0) uniform usamplerBuffer lpvSlots;  // 0: empty, else the receiver's index + 1
+layout(binding = 7) uniform usamplerBuffer lpvSlots;  // 0: empty, else the receiver's index + 1
 #if CLAIM
 layout(binding = 1) uniform usamplerBuffer lpvKeys;
 layout(std430, binding = 0) restrict buffer LpvReceivers { LpvReceiver receivers[]; };

@@ -7,13 +7,14 @@ layout(local_size_x = 64) in;
 #include "lpv/receivers/work.glsl"
 layout(std430, binding = 0) restrict buffer LpvReceivers { LpvReceiver receivers[]; };
 layout(LPV_FORMAT, binding = 0) writeonly uniform image3D lpvReceived;
-layout(binding = 0) uniform usamplerBuffer lpvSlots;
+#include "lpv/receivers/neighbours.glsl"
 uniform uint enoughPaths;  // an LPV_FIRST receiver follows its estimate without limit until it has this many
 // largest change per frame of the shown irradiance, relative to what it is or a quarter of its target; 0: no limit
 uniform float mostChange;
 // A new receiver's weight grows per frame by kGrowth of what it is and of what those beside it may have at least. What
-// it takes away from a much brighter one then darkens a surface by at most kGrowth per frame. It takes 522 frames.
-const float kGrowth = 0.008, kBeside = 1.0 / 64.0, kNearly = 127.0 / 128.0;
+// it takes away from a much brighter one then darkens a surface by at most kGrowth per frame. It takes 522 frames. One
+// that is itself much brighter than one beside it (LPV_BRIGHT) starts with less, since what it adds is many times that.
+const float kGrowth = 0.008, kBeside = 1.0 / 64.0, kBesideDark = 1.0 / 128.0, kNearly = 127.0 / 128.0;
 
 // Avoids visible jumps: the irradiance that a receiver shows moves gradually towards the estimate from its own and its
 // neighbours' paths, and a new receiver fades in. Where nothing was shown before, it starts with the estimate of its
@@ -28,7 +29,8 @@ void show(uint index, inout LpvReceiver receiver, vec3 target) {
   if (isFirst && receiver.paths >= enoughPaths) receivers[index].state = receiver.state & ~LPV_FIRST;
   bool arrives = mostChange == 0.0 || isFirst || largest <= mostChange * scale;
   receiver.shown = arrives ? target : receiver.shown + change * (mostChange * scale / largest);
-  float grown = receiver.presence + kGrowth * (receiver.presence + kBeside);
+  float beside = (receiver.state & LPV_BRIGHT) != 0u ? kBesideDark : kBeside;
+  float grown = receiver.presence + kGrowth * (receiver.presence + beside);
   float full = fullPresence(receiver);
   receiver.presence = min(mostChange == 0.0 ? full : grown, arrives ? full : kNearly * full);
   receivers[index].shown = receiver.shown;
@@ -38,19 +40,15 @@ void show(uint index, inout LpvReceiver receiver, vec3 target) {
 vec3 withNeighbours(LpvReceiver receiver) {
   float share = 1.0 - float(receiver.paths) / LPV_FULL_PATHS;
   if (share <= 0.0) return receiver.irradiance;
-  int cascade = receiver.cell.w / LPV_FACES;
   vec3 sum = float(receiver.paths) * receiver.irradiance;
   float weights = float(receiver.paths);
-  for (int i = 0; i < 27; ++i) {
-    ivec3 cell = receiver.cell.xyz + ivec3(i % 3, i / 3 % 3, i / 9) - 1,
-          place = cell - receiving.firstCell[cascade].xyz;
-    if (i == 13 || any(lessThan(place, ivec3(0))) || any(greaterThanEqual(place, ivec3(lpv.shape.x)))) continue;
-    uint holds = texelFetch(lpvSlots, slotOf(cascade, receiver.cell.w % LPV_FACES, cell)).x;
-    if (holds == 0u) continue;
-    uint paths = receivers[holds - 1u].paths;
-    float weight = share * float(paths) * smoothstep(0.5, 1.0, dot(receivers[holds - 1u].normal, receiver.normal));
+  for (int i = 0; i < kNeighbours; ++i) {
+    uint other;
+    if (!neighbourAt(receiver.cell, i, other)) continue;
+    uint paths = receivers[other].paths;
+    float weight = share * float(paths) * smoothstep(0.5, 1.0, dot(receivers[other].normal, receiver.normal));
     if (paths == 0u || !(weight > 0.0)) continue;
-    sum += weight * receivers[holds - 1u].irradiance;
+    sum += weight * receivers[other].irradiance;
     weights += weight;
   }
   return sum / weights;
