@@ -1,5 +1,5 @@
-// The receivers beside one: in the cells around its own, of its cascade and face. Needs
-// receivers/common.glsl.
+// The receivers beside one: in the cells around its own, of its cascade and face.
+// Needs lpv/receivers/common.glsl.
 layout(binding = 7) uniform usamplerBuffer lpvSlots;
 const int kNeighbours = 26;
 
