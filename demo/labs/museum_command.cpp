@@ -99,7 +99,7 @@ Work addLab(Command app) {
       [options] { return museum(*options); });
   options->common.declare(museumApp);
   museumApp.addOption("-o,--output", options->html, "FILE.html").showDefault();
-  museumApp.addFlag("--small", options->small, "fewer samples and patches: seconds instead of half a minute");
+  museumApp.addFlag("--small", options->small, "fewer samples, patches and cells: seconds instead of half a minute");
   return commands.work();
 }
 

@@ -23,12 +23,13 @@ uniform bool countsFading;  // also list receivers whose shown value is still fa
 // Whether one of the neighbours that are shown is much darker. Those of this frame are not shown yet.
 bool isBrightBeside(ivec4 cell, vec3 light) {
   const float kMuch = 4.0;
+  float most = largestOf(light) / kMuch;
   bool isBright = false;
   for (int i = 0; i < kNeighbours; ++i) {
     uint other;
     if (!neighbourAt(cell, i, other) || !(receivers[other].presence > 0.0)) continue;
     float shown = largestOf(receivers[other].shown);
-    isBright = isBright || (shown > 0.0 && kMuch * shown <= largestOf(light));
+    isBright = isBright || (shown > 0.0 && shown <= most);
   }
   return isBright;
 }
