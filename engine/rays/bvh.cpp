@@ -13,7 +13,7 @@
 #include <cstdint>
 #include <future>
 #include <limits>
-#include <optional>
+#include <span>
 #include <thread>
 
 namespace lucerna {
@@ -214,31 +214,41 @@ class BinaryBuilder {
     }
   }
 
-  // The part of a reference between two planes across an axis, rounded outwards; empty if only rounding put it there.
-  std::optional<Box> clip(const Reference& r, int axis, float low, float high) const {
+  // The boxes of a reference's parts between planes across an axis, which ascend, rounded outwards. A part is empty if
+  // only rounding put it there.
+  void clip(const Reference& r, int axis, std::span<const float> planes, std::span<Box> parts) const {
     const BvhTriangle& t = triangles_[r.triangle];
     const std::array<glm::dvec3, 3> corners{t.a, t.b, t.c};
-    glm::dvec3 min(1e300), max(-1e300);
-    const auto add = [&](const glm::dvec3& p) { min = glm::min(min, p), max = glm::max(max, p); };
+    double min[kBins][3], max[kBins][3];
+    for (std::size_t k = 0; k < parts.size(); ++k)
+      for (int c = 0; c < 3; ++c) min[k][c] = 1e300, max[k][c] = -1e300;
+    const auto add = [&](std::size_t k, const glm::dvec3& p) {
+      if (k >= parts.size()) return;
+      for (int c = 0; c < 3; ++c) min[k][c] = std::min(min[k][c], p[c]), max[k][c] = std::max(max[k][c], p[c]);
+    };
     for (std::size_t i = 0; i < 3; ++i) {
       const glm::dvec3 &p = corners[i], &q = corners[(i + 1) % 3];
-      if (p[axis] >= low && p[axis] <= high) add(p);
-      for (const double plane : {static_cast<double>(low), static_cast<double>(high)})
-        if ((p[axis] < plane && q[axis] > plane) || (p[axis] > plane && q[axis] < plane)) {
+      const double low = std::min(p[axis], q[axis]), high = std::max(p[axis], q[axis]);
+      for (std::size_t k = 0; k < planes.size(); ++k) {
+        const double plane = planes[k];
+        if (p[axis] >= plane && k < parts.size() && p[axis] <= planes[k + 1]) add(k, p);
+        if (low < plane && plane < high) {
           glm::dvec3 x = p + (plane - p[axis]) / (q[axis] - p[axis]) * (q - p);
           x[axis] = plane;
-          add(x);
+          add(k - 1, x), add(k, x);
         }
+      }
     }
-    Box box;
-    for (int k = 0; k < 3; ++k) {
-      box.min[k] = -nextAbove(static_cast<float>(-min[k]));
-      box.max[k] = nextAbove(static_cast<float>(max[k]));
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+      Box box;
+      for (int c = 0; c < 3; ++c) {
+        box.min[c] = -nextAbove(static_cast<float>(-min[k][c]));
+        box.max[c] = nextAbove(static_cast<float>(max[k][c]));
+      }
+      Box slab = r.box;
+      slab.min[axis] = std::max(slab.min[axis], planes[k]), slab.max[axis] = std::min(slab.max[axis], planes[k + 1]);
+      parts[k] = intersection(box, slab);
     }
-    Box slab = r.box;
-    slab.min[axis] = std::max(slab.min[axis], low), slab.max[axis] = std::min(slab.max[axis], high);
-    box = intersection(box, slab);
-    return box.empty() ? std::nullopt : std::optional(box);
   }
 
   static float plane(const Box& box, int axis, int k) {
@@ -255,15 +265,21 @@ class BinaryBuilder {
       if (!(width > 0.0f)) continue;
       std::array<Box, kBins> boxes{};
       std::array<std::size_t, kBins> enter{}, leave{};
+      std::array<Box, kBins> parts;
+      std::array<float, kBins + 1> planes;
+      for (int k = 0; k <= kBins; ++k) planes[static_cast<std::size_t>(k)] = plane(box, axis, k);
       for (const Reference& r : references) {
-        const int first = binOf(r.box.min[axis], low, width),
-                  last = std::max(first, binOf(r.box.max[axis], low, width));
-        ++enter[static_cast<std::size_t>(first)], ++leave[static_cast<std::size_t>(last)];
-        for (int b = first; b <= last; ++b) {
-          if (first == last) boxes[static_cast<std::size_t>(b)].add(r.box);
-          else if (const auto part = clip(r, axis, plane(box, axis, b), plane(box, axis, b + 1)))
-            boxes[static_cast<std::size_t>(b)].add(*part);
+        const auto first = static_cast<std::size_t>(binOf(r.box.min[axis], low, width)),
+                   last = std::max(first, static_cast<std::size_t>(binOf(r.box.max[axis], low, width)));
+        ++enter[first], ++leave[last];
+        if (first == last) {
+          boxes[first].add(r.box);
+          continue;
         }
+        const std::size_t count = last - first + 1;
+        clip(r, axis, std::span(planes).subspan(first, count + 1), std::span(parts).first(count));
+        for (std::size_t k = 0; k < count; ++k)
+          if (!parts[k].empty()) boxes[first + k].add(parts[k]);
       }
       improve(best, axis, boxes, enter, leave);
     }
@@ -291,10 +307,11 @@ class BinaryBuilder {
       const double both = cost(leftBox, nLeft, rightBox, nRight),
                    onlyLeft = cost(leftWhole, nLeft, rightBox, nRight - 1),
                    onlyRight = cost(leftBox, nLeft - 1, rightWhole, nRight);
-      const auto partLeft = clip(*r, cut.axis, r->box.min[cut.axis], at),
-                 partRight = clip(*r, cut.axis, at, r->box.max[cut.axis]);
-      if (both < std::min(onlyLeft, onlyRight) && spare > 0 && partLeft && partRight) {
-        left.push_back({*partLeft, r->triangle}), right.push_back({*partRight, r->triangle});
+      std::array<Box, 2> parts;
+      if (both < std::min(onlyLeft, onlyRight) && spare > 0)
+        clip(*r, cut.axis, std::array{r->box.min[cut.axis], at, r->box.max[cut.axis]}, parts);
+      if (!parts[0].empty() && !parts[1].empty()) {
+        left.push_back({parts[0], r->triangle}), right.push_back({parts[1], r->triangle});
         --spare;
       } else if (onlyLeft < onlyRight) {
         left.push_back(*r), leftBox = leftWhole, --nRight;

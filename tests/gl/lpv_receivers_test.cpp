@@ -15,6 +15,7 @@
 #include "render/renderer.hpp"
 #include "support/form_factor_twin.hpp"
 #include "support/largest_difference.hpp"
+#include "support/long_tests.hpp"
 #include "support/path_scenes.hpp"
 #include "support/pixel_rays.hpp"
 #include "walk/scene_views.hpp"
@@ -797,6 +798,8 @@ TEST_F(LpvReceiversAgainstPaths, CornellBox) {
                          Row{2, Component::indirect, Transport::indirect, 3},
                          Row{kAll, Component::indirect, Transport::indirect, PathTracer::kUnlimited},
                          Row{kAll, Component::all, Transport::all, PathTracer::kUnlimited}}) {
+    // One and all are seen every time; two go the same way, and AClosedRoomThatShines counts them.
+    if (row.bounces == 2 && !test::longTests()) continue;
     RenderSettings s = settings(row.bounces, 512, row.component);
     s.lpv.cascades.cells = 32;
     s.lpv.cascades.cascades = 3;

@@ -6,16 +6,21 @@ A list (shaders.txt, engine.txt) has one block a fault:
     - TEXT        of a line, which must stand exactly once in the file
     + TEXT        what it becomes
     ? LABEL FILTER  the tests that notice: <label>_tests with a GoogleTest filter
-Shaders are read from a copy of the folder (LUCERNA_SHADERS); the engine is built again in a build folder of its own.
-A fault that its own tests pass by is shown to the other tests of the suite before it counts as survived.
+Shaders are read from a copy of the folder (LUCERNA_SHADERS), as many faults at once as there are processors; the engine
+is built again in a build folder of its own, for one fault at a time. A fault that its own tests pass by is shown to
+the other tests of the suite before it counts as survived.
 """
 import argparse
+import concurrent.futures
+import json
 import os
 import pathlib
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
@@ -76,14 +81,17 @@ def exists(build, test):
 
 
 def passes(build, test, environment, seconds=900):
-    """Whether the tests pass; a hang, a crash and a failure are all noticed."""
+    """Whether the tests pass; a hang, a crash and a failure are all noticed, but not who interrupts all of this."""
     label, pattern = test
     command = [build / "tests" / f"{label}_tests", f"--gtest_filter={pattern}", "--gtest_fail_fast", "--gtest_brief=1"]
     try:
-        return subprocess.run(command, env=environment, timeout=seconds, stdout=subprocess.DEVNULL,
-                              stderr=subprocess.DEVNULL).returncode == 0
+        status = subprocess.run(command, env=environment, timeout=seconds, stdout=subprocess.DEVNULL,
+                                stderr=subprocess.DEVNULL).returncode
     except subprocess.TimeoutExpired:
         return False
+    if status in (-signal.SIGHUP, -signal.SIGINT, -signal.SIGTERM):
+        sys.exit("interrupted")
+    return status == 0
 
 
 def noticed_by(fault, build, environment):
@@ -94,17 +102,23 @@ def noticed_by(fault, build, environment):
 
 
 class ShaderTrial:
-    """A copy of the shaders in which one file is changed at a time."""
+    """A copy of the shaders for each thread, in which one file is changed at a time."""
 
     def __init__(self, build, folder):
         self.build, self.folder = build, folder
-        shutil.copytree(SOURCE / "shaders", folder / "shaders")
-        self.environment = dict(os.environ, LUCERNA_SHADERS=str(folder / "shaders"))
+        self.copies = threading.local()
+
+    def copy(self):
+        if not hasattr(self.copies, "folder"):
+            self.copies.folder = self.folder / f"shaders-{threading.get_ident()}"
+            shutil.copytree(SOURCE / "shaders", self.copies.folder / "shaders")
+        return self.copies.folder
 
     def run(self, fault):
-        file, text = plant(fault, self.folder)
+        folder = self.copy()
+        file, text = plant(fault, folder)
         try:
-            return noticed_by(fault, self.build, self.environment)
+            return noticed_by(fault, self.build, dict(os.environ, LUCERNA_SHADERS=str(folder / "shaders")))
         finally:
             file.write_text(text)
 
@@ -139,6 +153,41 @@ class EngineTrial:
             file.write_text(text)
 
 
+class Kept:
+    """What earlier runs found, by fault; a line of JSON each, so that an interrupted run goes on."""
+
+    def __init__(self, file):
+        self.file, self.lock, self.verdicts = file, threading.Lock(), {}
+        if file and file.exists():
+            for line in file.read_text().splitlines():
+                key, test = json.loads(line)
+                self.verdicts[key] = test and tuple(test)
+
+    @staticmethod
+    def key(fault):
+        return "\n".join((fault.path, fault.before, fault.after, *fault.test, *(label for label, _ in OTHERS)))
+
+    def add(self, fault, test):
+        with self.lock:
+            self.verdicts[self.key(fault)] = test
+            if self.file:
+                self.file.parent.mkdir(parents=True, exist_ok=True)
+                with self.file.open("a") as file:
+                    file.write(json.dumps([self.key(fault), test]) + "\n")
+
+
+def at_once(count, work, items):
+    """Calls work with each item, `count` at once; the first that raises ends all."""
+    with concurrent.futures.ThreadPoolExecutor(count) as pool:
+        futures = [pool.submit(work, item) for item in items]
+        try:
+            for future in concurrent.futures.as_completed(futures):
+                future.result()
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", type=pathlib.Path, required=True, help="build folder with the test programs")
@@ -146,6 +195,8 @@ def main():
     parser.add_argument("--only", default="", help="faults of files whose path contains this")
     parser.add_argument("--own", action="store_true",
                         help="show a fault to the tests that its list names and to no others")
+    parser.add_argument("--keep", type=pathlib.Path,
+                        help="verdicts are kept in this file; those in it are not sought again")
     parser.add_argument("--check", action="store_true", help="only check that every fault can be planted")
     arguments = parser.parse_args()
     if arguments.own:
@@ -157,29 +208,40 @@ def main():
     print(f"{len(faults)} faults")
     if arguments.check:
         return
-    survivors = []
-    passed = set()
-    with tempfile.TemporaryDirectory(prefix="lucerna-mutants-") as folder:
-        trials = {}
-        for number, fault in enumerate(faults, 1):
-            if fault.engine not in trials:
-                trial = EngineTrial if fault.engine else ShaderTrial
-                trials[fault.engine] = trial(arguments.build, pathlib.Path(folder))
-            # Tests that fail without a fault would notice every one, no tests none.
-            if not exists(arguments.build, fault.test):
-                sys.exit(f"there are no tests {fault.test[0]} {fault.test[1]}")
-            if fault.test not in passed and not passes(arguments.build, fault.test, dict(os.environ)):
-                sys.exit(f"{fault.test[0]} {fault.test[1]} fails without any fault")
-            passed.add(fault.test)
-            begun = time.monotonic()
-            test = trials[fault.engine].run(fault)
-            took = time.monotonic() - begun
-            verdict = f"noticed by {test[0]} {test[1]}" if test else "SURVIVED"
-            if test and test != fault.test:
-                verdict += f", not by {fault.test[0]} {fault.test[1]}"
-            print(f"{number}/{len(faults)} {took:.0f} s: {fault}: {verdict}", flush=True)
-            if not test:
-                survivors.append(fault)
+    kept = Kept(arguments.keep)
+    left = [f for f in faults if kept.key(f) not in kept.verdicts]
+    if len(left) < len(faults):
+        print(f"{len(faults) - len(left)} verdicts are in {arguments.keep}")
+
+    # Tests that fail without a fault would notice every one, no tests none.
+    def passes_without(test):
+        if not exists(arguments.build, test):
+            sys.exit(f"there are no tests {test[0]} {test[1]}")
+        if not passes(arguments.build, test, dict(os.environ)):
+            sys.exit(f"{test[0]} {test[1]} fails without any fault")
+
+    def try_fault(fault, trial):
+        begun = time.monotonic()
+        test = trial.run(fault)
+        took = time.monotonic() - begun
+        kept.add(fault, test)
+        verdict = f"noticed by {test[0]} {test[1]}" if test else "SURVIVED"
+        if test and test != fault.test:
+            verdict += f", not by {fault.test[0]} {fault.test[1]}"
+        number = sum(kept.key(f) in kept.verdicts for f in faults)
+        print(f"{number}/{len(faults)} {took:.0f} s: {fault}: {verdict}", flush=True)
+
+    processors = os.cpu_count()
+    at_once(processors, passes_without, dict.fromkeys(f.test for f in left))
+    with tempfile.TemporaryDirectory(prefix="lucerna-mutants-") as name:
+        folder = pathlib.Path(name)
+        shaders = ShaderTrial(arguments.build, folder)
+        at_once(processors, lambda fault: try_fault(fault, shaders), [f for f in left if not f.engine])
+        engine = None
+        for fault in (f for f in left if f.engine):
+            engine = engine or EngineTrial(arguments.build, folder)
+            try_fault(fault, engine)
+    survivors = [f for f in faults if not kept.verdicts[kept.key(f)]]
     killed = len(faults) - len(survivors)
     print(f"{killed} of {len(faults)} noticed")
     for fault in survivors:
