@@ -214,8 +214,8 @@ class BinaryBuilder {
     }
   }
 
-  // The boxes of a reference's parts between planes across an axis, which ascend, rounded outwards. A part is empty if
-  // only rounding put it there.
+  // The boxes of a reference's parts between ascending planes across an axis, rounded outwards. A part is empty if only
+  // rounding put it there.
   void clip(const Reference& r, int axis, std::span<const float> planes, std::span<Box> parts) const {
     const BvhTriangle& t = triangles_[r.triangle];
     const std::array<glm::dvec3, 3> corners{t.a, t.b, t.c};
@@ -223,7 +223,7 @@ class BinaryBuilder {
     for (std::size_t k = 0; k < parts.size(); ++k)
       for (int c = 0; c < 3; ++c) min[k][c] = 1e300, max[k][c] = -1e300;
     const auto add = [&](std::size_t k, const glm::dvec3& p) {
-      if (k >= parts.size()) return;
+      if (k >= parts.size()) return;  // above the last plane, or below the first, where k - 1 wraps around
       for (int c = 0; c < 3; ++c) min[k][c] = std::min(min[k][c], p[c]), max[k][c] = std::max(max[k][c], p[c]);
     };
     for (std::size_t i = 0; i < 3; ++i) {

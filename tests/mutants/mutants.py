@@ -81,7 +81,7 @@ def exists(build, test):
 
 
 def passes(build, test, environment, seconds=900):
-    """Whether the tests pass; a hang, a crash and a failure are all noticed, but not who interrupts all of this."""
+    """Whether the tests pass; a hang, a crash and a failure are all noticed. An interruption ends everything."""
     label, pattern = test
     command = [build / "tests" / f"{label}_tests", f"--gtest_filter={pattern}", "--gtest_fail_fast", "--gtest_brief=1"]
     try:
@@ -102,25 +102,17 @@ def noticed_by(fault, build, environment):
 
 
 class ShaderTrial:
-    """A copy of the shaders for each thread, in which one file is changed at a time."""
+    """A copy of the shaders for each fault."""
 
     def __init__(self, build, folder):
         self.build, self.folder = build, folder
-        self.copies = threading.local()
-
-    def copy(self):
-        if not hasattr(self.copies, "folder"):
-            self.copies.folder = self.folder / f"shaders-{threading.get_ident()}"
-            shutil.copytree(SOURCE / "shaders", self.copies.folder / "shaders")
-        return self.copies.folder
 
     def run(self, fault):
-        folder = self.copy()
-        file, text = plant(fault, folder)
-        try:
-            return noticed_by(fault, self.build, dict(os.environ, LUCERNA_SHADERS=str(folder / "shaders")))
-        finally:
-            file.write_text(text)
+        with tempfile.TemporaryDirectory(dir=self.folder) as name:
+            shaders = pathlib.Path(name) / "shaders"
+            shutil.copytree(SOURCE / "shaders", shaders)
+            plant(fault, shaders.parent)
+            return noticed_by(fault, self.build, dict(os.environ, LUCERNA_SHADERS=str(shaders)))
 
 
 class EngineTrial:
@@ -184,7 +176,7 @@ def at_once(count, work, items):
             for future in concurrent.futures.as_completed(futures):
                 future.result()
         except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
+            pool.shutdown(cancel_futures=True)
             raise
 
 
