@@ -161,6 +161,35 @@ TEST_F(ReflectiveShadowMapGl, TrianglesThatCoverNoTexelAreLeftOut) {
   }
 }
 
+// Centres of texels are whole numbers from 0 to 7: the first and the last of them count, what lies between two or
+// outside does not.
+TEST_F(ReflectiveShadowMapGl, TrianglesOverTexelsAtTheBorderAreKept) {
+  constexpr int kSize = 8;
+  struct Case {
+    double from, to;
+    bool isKept;
+  };
+  for (const Case& c : {Case{-0.8, -0.2, false},
+                        {-0.4, 0.4, true},
+                        {0.2, 0.8, false},
+                        {-0.4, 7.4, true},
+                        {6.2, 6.8, false},
+                        {6.6, 7.4, true},
+                        {7.2, 7.8, false}})
+    for (const bool along : {false, true}) {
+      const auto place = [&](double across, double other) {
+        const auto inClip = [](double texel) { return 2.0 * (texel + 0.5) / kSize - 1.0; };
+        return glm::dvec3(inClip(along ? across : other), inClip(along ? other : across), 0.0);
+      };
+      SceneBuilder builder;
+      builder.triangle(place(c.from, 2.5), place(c.to, 2.5), place(c.to, 4.5), builder.material(glm::vec3(0.5f)));
+      const Scene scene = builder.scene();
+      const GpuScene gpuScene(scene, analyse(scene), capabilities());
+      EXPECT_EQ(gpuScene.covering(glm::mat4(1.0f), kSize).triangleCount(), c.isKept ? 1u : 0u)
+          << c.from << " to " << c.to << (along ? " in x" : " in y");
+    }
+}
+
 TEST_F(ReflectiveShadowMapGl, PositionsLieOnThePlateAndNormalsOnTheLightsSide) {
   for (const float normalSign : {1.0f, -1.0f})  // vertex normals with and against the winding
     for (const double degrees : {20.0, 160.0, 200.0, 340.0}) {  // either side towards the light
