@@ -171,7 +171,7 @@ TEST_F(RendererGl, FoldsInTheSunHaveNoDarkLines) {
   const glm::dvec3 sun = glm::normalize(glm::dvec3(0.05, -1.0, 0.1));
   builder.sun(sun, glm::vec3(std::numbers::pi_v<float>));
   const double least = -glm::dot(sun, glm::normalize(glm::dvec3(0.03, 0.05, 0.0)));  // of the strips turned away
-  // All strips, and one fold in pixels of a third of a texel (4 / 512).
+  // From afar, and one fold in pixels smaller than a texel.
   for (const double fieldOfView : {0.6, 0.1}) {
     const Image image =
         render(builder.scene(), lookingAt({0.2, 1, 0}, {0.2, 0, 0}, fieldOfView), settings(Component::direct));

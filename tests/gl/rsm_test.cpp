@@ -161,8 +161,8 @@ TEST_F(ReflectiveShadowMapGl, TrianglesThatCoverNoTexelAreLeftOut) {
   }
 }
 
-// Centres of texels are whole numbers from 0 to 7: the first and the last of them count, what lies between two or
-// outside does not.
+// Texel centres lie at whole numbers, from 0 to 7. A triangle that covers the first or the last of them is kept; one
+// between two centres or outside the map is not.
 TEST_F(ReflectiveShadowMapGl, TrianglesOverTexelsAtTheBorderAreKept) {
   constexpr int kSize = 8;
   struct Case {
