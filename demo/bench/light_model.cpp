@@ -24,7 +24,7 @@ bool showsLights(Transport transport) { return transport == Transport::all || tr
 
 LightKinds directLightsOf(const RenderSettings& settings) {
   LightKinds kinds{true, true, false, false};  // of forward shading
-  if (settings.technique == Technique::radiosity) kinds.surfaces = true;
+  if (settings.technique == Technique::radiosity) kinds.surfaces = kinds.environment = true;
   if (settings.technique == Technique::lpv) {
     if (settings.lpv.transport != LpvTransport::propagate) kinds.surfaces = kinds.environment = true;
   }
