@@ -357,7 +357,7 @@ Tables measureLpvTables(const TablesInput& input) {
   const gl::Capabilities& capabilities = input.context.capabilities();
   const bool haveAtomic = capabilities.shaderAtomicFloat || capabilities.shaderAtomicFp16Vector;
   const int frames = std::max(1, static_cast<int>(std::ceil(10.0 * input.scale - 1e-9)));
-  const int shrink = input.scale < 0.5 ? 2 : 1;
+  const int shrink = input.scale < 0.05 ? 4 : input.scale < 0.5 ? 2 : 1;  // cells a side
   const auto config = [&](const PublishedRow& row, LpvFill fill, LpvPropagate propagate, bool published = false) {
     return Config{row.rsmSize, row.cells / shrink, row.grids, row.iterations, row.blocking, fill, propagate, published};
   };
@@ -481,7 +481,9 @@ Tables measureLpvTables(const TablesInput& input) {
   // Explain how to read the tables.
   tables.notes = {
       fmt::format("Scale    {}: {} frame{} a figure after one of warm-up{}", input.scale, frames, frames > 1 ? "s" : "",
-                  shrink > 1 ? "; grids of 16^3 where 32^3 was published, 32^3 for 64^3" : ""),
+                  shrink == 1 ? ""
+                              : fmt::format("; grids of {}^3 where 32^3 was published, {}^3 for 64^3", 32 / shrink,
+                                            64 / shrink)),
       fmt::format("Clock    {}", capabilities.softwareRenderer ? "wall clock between glFinish (software renderer)"
                                                                : "GL_TIME_ELAPSED"),
       fmt::format("Paths    fill/propagate; layered/layered as published (the text's steps, formats and cell sizes, "

@@ -381,7 +381,7 @@ TEST_F(FolderParts, RowsOfTables) {
     const char *original, *another;
   };
   for (const Of& of : {Of{"vpt --scale 0.001", "vpt --scale 0.0012"},
-                       Of{"lpv --scale 0.05 --fill fixed", "lpv --scale 0.05 --fill layered"},
+                       Of{"lpv --scale 0.04 --fill fixed", "lpv --scale 0.04 --fill layered"},
                        Of{"rad --scale 0.0005", "rad --scale 0.0006"}}) {
     for (const char* name : {"parts", "whole", "other", "half"}) fs::remove_all(path(name));
     const std::string command = std::string("bench tables --original ") + of.original;
