@@ -23,12 +23,9 @@ std::string nameOf(const LightPaths& paths) {
 bool showsLights(Transport transport) { return transport == Transport::all || transport == Transport::direct; }
 
 LightKinds directLightsOf(const RenderSettings& settings) {
-  LightKinds kinds{true, true, false, false};  // of forward shading
-  if (settings.technique == Technique::radiosity) kinds.surfaces = kinds.environment = true;
-  if (settings.technique == Technique::lpv) {
-    if (settings.lpv.transport != LpvTransport::propagate) kinds.surfaces = kinds.environment = true;
-  }
-  return kinds;
+  const bool all = settings.technique == Technique::radiosity ||
+                   (settings.technique == Technique::lpv && settings.lpv.transport != LpvTransport::propagate);
+  return all ? LightKinds{} : LightKinds{true, true, false, false};  // else of forward shading: sun and lamps
 }
 
 LightKinds lightsOf(const RenderSettings& settings) {

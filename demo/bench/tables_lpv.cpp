@@ -357,7 +357,7 @@ Tables measureLpvTables(const TablesInput& input) {
   const gl::Capabilities& capabilities = input.context.capabilities();
   const bool haveAtomic = capabilities.shaderAtomicFloat || capabilities.shaderAtomicFp16Vector;
   const int frames = std::max(1, static_cast<int>(std::ceil(10.0 * input.scale - 1e-9)));
-  const int shrink = input.scale < 0.05 ? 4 : input.scale < 0.5 ? 2 : 1;  // cells a side
+  const int shrink = input.scale < 0.05 ? 4 : input.scale < 0.5 ? 2 : 1;  // divides the cells a side
   const auto config = [&](const PublishedRow& row, LpvFill fill, LpvPropagate propagate, bool published = false) {
     return Config{row.rsmSize, row.cells / shrink, row.grids, row.iterations, row.blocking, fill, propagate, published};
   };

@@ -226,8 +226,8 @@ TEST_F(Measure, PicturesThatAreAskedForAndFloors) {
   expectOneLine(RUN_LUCERNA(bench + "--rung 'rsm rsm.samplez=1'"), 2, {"rsm.samplez"});
 }
 
-// A sun and an emissive lamp. RSM and LPV know no emissive surfaces: what they are judged by holds none of the lamp's
-// light, as if it were off. Radiosity has it.
+// A sun and an emissive lamp. Forward shading and RSM know no emissive surfaces: what they are judged by holds none of
+// the lamp's light, as if it were off. Radiosity has it.
 TEST_F(Measure, TechniquesAreJudgedByTheLightThatTheyAreGiven) {
   const auto bench = [&](const char* emission, const char* techniques) {
     std::ofstream(path("scene.mtl"))

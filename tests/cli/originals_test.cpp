@@ -1,6 +1,6 @@
 // docs/originals.md: every command of its tables runs, in their order and in one folder, each made small by arguments
 // added to it. The short form leaves out the benches, which take minutes even so, and has the Cornell box's model in
-// place of the atrium's, of which more than half of such a command's time is spent in reading and uploading it.
+// place of the atrium's: reading and uploading that takes more than half of such a command's time.
 #include "support/long_tests.hpp"
 #include "support/subprocess.hpp"
 #include "support/temp_folder.hpp"
