@@ -365,10 +365,10 @@ void main() {
 #if MEDIA
       // In a homogeneous medium the flight length is drawn first: short rays are cheap to trace.
       int medium = mediumInside(path.inside);
-      flight = medium >= 0 ? beginFlight(path, media[medium], numbers) : 3e38;
+      flight = medium >= 0 ? beginFlight(path, mediumOf(medium), numbers) : 3e38;
 #if WALKS
       if (medium >= 0) {
-        if (!walk(path, media[medium], flight, numbers)) stage = kEnds;
+        if (!walk(path, mediumOf(medium), flight, numbers)) stage = kEnds;
         park(path);
       }
       skip = path.skip;
@@ -509,8 +509,8 @@ void main() {
 #if NEXT_EVENT && (POINTS || SPOTS) && !DISTANCE_WITHOUT_PDF && !BOOSTED_INTERACTION
       if (medium >= 0 && media[medium].grid < 0 && lampsReach(path)) {
         takeHit(0u, arrival);
-        addPointLight(path, media[medium], channelProbabilities(path.throughput), flownDistance(path, arrival, flight),
-                      numbers);
+        addPointLight(path, mediumOf(medium), channelProbabilities(path.throughput),
+                      flownDistance(path, arrival, flight), numbers);
         if (shadow.waits) {
           job = kShadowRay;
           after = kFlown;

@@ -7,8 +7,11 @@
 // UNATTENUATED_SHADOW_RAYS.
 #include "pathtracer/boundary.glsl"
 #if MEDIA
+#include "lib/angle.glsl"
 #include "pathtracer/media.glsl"
 layout(std430, binding = 6) restrict readonly buffer MediumBlock { MediumRecord media[]; };
+// NVIDIA's compiler refuses a structure of such a block as an argument (C1317), where OpenGL allows it.
+MediumRecord mediumOf(int index) { return media[index]; }
 #endif
 #if HETEROGENEOUS
 #include "pathtracer/density.glsl"
@@ -162,7 +165,7 @@ bool crossShadow(Hit hit) {
     float unit = shadow.infinite ? 1.0 : length(shadow.direction),
           far = hit.triangle == kNoHit ? (shadow.infinite ? kFar : 1.0) : hit.t;
     uvec4 words = shadow.words;
-    vec3 through = mediumTransmittance(media[medium], shadow.origin + shadow.from * shadow.direction,
+    vec3 through = mediumTransmittance(mediumOf(medium), shadow.origin + shadow.from * shadow.direction,
                                        shadow.direction / unit, (far - shadow.from) * unit, words);
 #if HETEROGENEOUS
     forgetAddresses();
@@ -263,7 +266,7 @@ void addPointLight(inout Path path, MediumRecord medium, vec3 q, float s, PathNu
   float a = -dot(to, path.direction);
   vec3 beside = to + a * path.direction;
   float h = max(length(beside), max(1e-4 * min(s, length(to)), 1e-30)), b = a + s;
-  float angle = atan((b - a) * h, h * h + a * b);
+  float angle = angleOf((b - a) * h, h * h + a * b);
   if (!(angle > 0.0)) return;
   float sine = sin(xi.x * angle), cosine = cos(xi.x * angle);
   float x = clamp(sine * (h * h + a * a) / (h * cosine - a * sine), 0.0, s);

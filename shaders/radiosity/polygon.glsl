@@ -1,12 +1,13 @@
 // Form factor from a point with normal +z to a triangle: the contour integral [Lambert1760], [BaumRushmeierWinget1989
 // eq 6], after clipping at the horizon. The triangle faces the point (clockwise as seen from it is positive here; the
 // absolute value is returned).
+#include "lib/angle.glsl"
 
 // z component of one edge's contour integral: the angle between a and b times the z of the unit vector across them.
 float contour(vec3 a, vec3 b) {
   vec3 across = cross(a, b);
   float s = length(across);
-  return s > 0.0 ? atan(s, dot(a, b)) * across.z / s : 0.0;
+  return s > 0.0 ? angleOf(s, dot(a, b)) * across.z / s : 0.0;
 }
 
 float pointToTriangle(vec3 a, vec3 b, vec3 c) {

@@ -16,11 +16,12 @@ uniform float minimumDistance2;  // over surfel.across: scene units squared
 #endif
 
 #if NEAR == NEAR_QUAD
+#include "lib/angle.glsl"
 // One edge's term of Lambert's polygon formula: angle between a and b, times the unit normal of their plane, along n.
 float edgeIntegral(vec3 a, vec3 b, vec3 n) {
   vec3 across = cross(a, b);
   float sine = length(across);
-  return sine > 0.0 ? atan(sine, dot(a, b)) * dot(across, n) / sine : 0.0;
+  return sine > 0.0 ? angleOf(sine, dot(a, b)) * dot(across, n) / sine : 0.0;
 }
 
 // Form factor from a point with normal n to the parallelogram centre +- u/2 +- v/2 (relative to the point), clipped at

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <regex>
 #include <set>
 #include <string>
 #include <vector>
@@ -40,6 +42,39 @@ std::vector<std::pair<std::string, std::vector<std::string>>> sources() {
 TEST(Form, NoLineOfSourcesIsWiderThan120Columns) {
   for (const auto& [file, lines] : sources())
     for (std::size_t i = 0; i < lines.size(); ++i) EXPECT_LE(columnsOf(lines[i]), 120u) << file << ":" << i + 1;
+}
+
+// NVIDIA's compiler refuses a structure that lies in a storage block as an argument (C1317), where OpenGL allows it: it
+// is copied first, or a function returns it (mediumOf of pathtracer/volume.glsl).
+TEST(Form, NoStructureOfAStorageBlockIsAnArgument) {
+  const std::regex blockOf(R"(\bbuffer\s+\w+\s*\{\s*(\w+)\s+(\w+)\[\];)"), structOf(R"(^struct (\w+))"),
+      memberOf(R"(^\s+(\w+) (\w+);)"), argument(R"(\w\([^;]*?\b(\w+)\[[^\]]*\](?:\.(\w+))?\s*[,)])");
+  std::set<std::string> structures, members;
+  std::map<std::string, std::string> arrays;
+  const auto shaders = sources();
+  std::smatch match;
+  for (const auto& [file, lines] : shaders)
+    for (const std::string& line : lines)
+      if (file.starts_with("shaders/") && std::regex_search(line, match, structOf)) structures.insert(match[1]);
+  for (const auto& [file, lines] : shaders)
+    for (const std::string& line : lines) {
+      if (!file.starts_with("shaders/")) continue;
+      if (std::regex_search(line, match, blockOf) && structures.contains(match[1])) arrays[match[2]] = match[1];
+      if (std::regex_search(line, match, memberOf) && structures.contains(match[1])) members.insert(match[2]);
+    }
+  EXPECT_GE(arrays.size(), 10u);
+  EXPECT_TRUE(members.contains("maskTexture"));
+  const auto offends = [&](const std::string& line) {
+    for (auto at = std::sregex_iterator(line.begin(), line.end(), argument); at != std::sregex_iterator(); ++at)
+      if (arrays.contains((*at)[1]) && (!(*at)[2].matched || members.contains((*at)[2]))) return true;
+    return false;
+  };
+  EXPECT_TRUE(offends("  flight = medium >= 0 ? beginFlight(path, media[medium], numbers) : 3e38;"));
+  EXPECT_TRUE(offends("  return readTexture(materials[material].maskTexture, texCoord).a < 0.5;"));
+  EXPECT_FALSE(offends("  bool fades = receivers[index].presence < fullPresence(receivers[index].paths);"));
+  for (const auto& [file, lines] : shaders)
+    for (std::size_t i = 0; i < lines.size(); ++i)
+      EXPECT_FALSE(file.starts_with("shaders/") && offends(lines[i])) << file << ":" << i + 1;
 }
 
 // A function of over 80 lines has a heading over each of its parts. Functions are what ends with a brace alone in the

@@ -59,7 +59,7 @@ void main() {
   }
   if (triangle == LPV_NOWHERE) return;
   // also if it is not needed itself, but is looked up next to needed ones
-  bool fades = countsFading && receivers[index].presence < fullPresence(receivers[index]);
+  bool fades = countsFading && receivers[index].presence < fullPresence(receivers[index].paths);
   bool lacksPaths = receivers[index].paths < pathTarget &&
                     (receivers[index].born == receiving.frame || texelFetch(lpvSeen, int(index)).x == receiving.frame);
   if (!fades && !lacksPaths) return;

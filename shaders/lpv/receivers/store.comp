@@ -31,7 +31,7 @@ void show(uint index, inout LpvReceiver receiver, vec3 target) {
   receiver.shown = arrives ? target : receiver.shown + change * (mostChange * scale / largest);
   float beside = (receiver.state & LPV_BRIGHT) != 0u ? kBesideDark : kBeside;
   float grown = receiver.presence + kGrowth * (receiver.presence + beside);
-  float full = fullPresence(receiver);
+  float full = fullPresence(receiver.paths);
   receiver.presence = min(mostChange == 0.0 ? full : grown, arrives ? full : kNearly * full);
   receivers[index].shown = receiver.shown;
   receivers[index].presence = receiver.presence;

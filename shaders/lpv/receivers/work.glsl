@@ -11,6 +11,6 @@ layout(std430, binding = 5) restrict buffer LpvReceiverWork {
 // The weight in lookups of a receiver that has faded in. At least a quarter: times 1/8, the least share of a point's
 // own cell, that is enough of a cascade for the lookup (kEnough). Otherwise coarser receivers would replace those with
 // few paths.
-float fullPresence(LpvReceiver receiver) { return clamp(float(receiver.paths) / LPV_FULL_PATHS, 0.25, 1.0); }
+float fullPresence(uint paths) { return clamp(float(paths) / LPV_FULL_PATHS, 0.25, 1.0); }
 
 uint receiverCount() { return min(work.wanted, receiving.capacity); }
