@@ -50,10 +50,17 @@ GLenum firstError() {
   return first;
 }
 
+/// Of OpenGL 4.5 and KHR_robustness: the error of every call after a reset.
+constexpr GLenum kContextLost = 0x0507;
+
 /// outOfMemory: the message if memory ran out; place: the last operation, for every other error.
 void throwFirstError(const std::string& outOfMemory, const std::string& place) {
   const GLenum error = firstError();
   if (error == GL_OUT_OF_MEMORY) throwMissingCapability("{}", outOfMemory);
+  if (error == kContextLost) {
+    throwIfReset();
+    throw Error(ErrorKind::missingCapability, "the driver reset the GPU: cannot continue");
+  }
   if (error != GL_NO_ERROR)
     throw Error(ErrorKind::fault, fmt::format("internal error: OpenGL reports {} ({})", nameOfError(error), place));
 }

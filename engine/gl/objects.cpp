@@ -236,7 +236,9 @@ void Texture::upload(GLenum format, GLenum type, const void* data, int level) {
 void Texture::copyFrom(const Buffer& buffer, std::size_t offset) {
   const Transfer& transfer = transferOf(format_);
   CHECK(levels_ == 1 && offset + bytes() <= buffer.bytes(), "{} bytes at {} of {}", bytes(), offset, buffer.bytes());
-  buffer.settle(Barrier::pixelBuffer);
+  // Barrier::pixelBuffer by the specification. NVIDIA's driver (580.159) still fills small textures with what the
+  // buffer held before its shaders ran (docs/drivers.md).
+  buffer.settle(Barrier::all);
   glBindBuffer(GL_PIXEL_UNPACK_BUFFER, buffer.id());
   upload(transfer.format, transfer.type, reinterpret_cast<const void*>(offset), 0);
   glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);

@@ -53,6 +53,8 @@ RasterPass::RasterPass(const std::string& name, const Framebuffer& target, const
   enable(GL_DEPTH_CLAMP, state.depthClamp);
 }
 
+RasterPass::~RasterPass() { glBindFramebuffer(GL_FRAMEBUFFER, 0); }
+
 void RasterPass::clearColor(int attachment, const glm::vec4& value) const {
   glClearBufferfv(GL_COLOR, attachment, &value.x);
 }

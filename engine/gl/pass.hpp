@@ -34,10 +34,14 @@ class DebugGroup {
   DebugGroup& operator=(const DebugGroup&) = delete;
 };
 
-/// Draws into a framebuffer with a complete state, for its lifetime.
+/// Draws into a framebuffer with a complete state, for its lifetime. Then the framebuffer is unbound: what a shader
+/// reads from a texture that is attached to the bound one is undefined (OpenGL 4.3, 9.3.1).
 class RasterPass {
  public:
   RasterPass(const std::string& name, const Framebuffer& target, const RasterState& state);
+  ~RasterPass();
+  RasterPass(const RasterPass&) = delete;
+  RasterPass& operator=(const RasterPass&) = delete;
   void clearColor(int attachment, const glm::vec4& value) const;
   void clearDepth(float value = 1.0f) const;
   /// Restricts drawing to these pixels (scissor).

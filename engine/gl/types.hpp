@@ -61,6 +61,7 @@ enum class Barrier : GLbitfield {
   pixelBuffer = GL_PIXEL_BUFFER_BARRIER_BIT,
   bufferUpdate = GL_BUFFER_UPDATE_BARRIER_BIT,
   textureUpdate = GL_TEXTURE_UPDATE_BARRIER_BIT,
+  all = GL_ALL_BARRIER_BITS,
 };
 constexpr Barrier operator|(Barrier a, Barrier b) {
   return static_cast<Barrier>(static_cast<GLbitfield>(a) | static_cast<GLbitfield>(b));
