@@ -1,6 +1,7 @@
 // Three ways to tell what a hemicube's pixels see: each against closed forms, their rows against one another, and the
 // choice among them.
 #include "base/error.hpp"
+#include "base/files.hpp"
 #include "radiosity/hemicubes.hpp"
 #include "radiosity/solution.hpp"
 #include "support/gl_fixture.hpp"
@@ -11,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <numeric>
 
 namespace lucerna {
@@ -179,6 +181,28 @@ TEST_F(HemicubeVisibilityTest, TheCheapestIsChosenAndTheOthersAreGone) {
   EXPECT_EQ(small.visibility(), HemicubeVisibility::raster);
   EXPECT_EQ(small.costs().size(), 1u);
   EXPECT_EQ(fresh.statistics().built, 5);
+}
+
+TEST_F(HemicubeVisibilityTest, AnItemBufferThatLosesTrianglesIsNotChosen) {
+  const test::TempFolder folder;
+  std::filesystem::copy(LUCERNA_SOURCE_DIR "/shaders", folder.path(), std::filesystem::copy_options::recursive);
+  const RadiosityMesh mesh = makePatches(litCube(5), {});
+  HemicubeSettings settings;
+  settings.worthMeasuring = 0.0;
+  for (const bool loses : {false, true}) {
+    if (loses) {
+      std::string text = readFileText(folder / "radiosity/hemicube_item.frag");
+      const std::string all = "void main() {";
+      text.replace(text.find(all), all.size(), all + " if (fItem % 20u == 0u) discard;");
+      folder.write("radiosity/hemicube_item.frag", text);
+    }
+    gl::ProgramLibrary library(folder.path());
+    const Hemicubes chosen(library, capabilities(), mesh, settings);
+    EXPECT_EQ(chosen.costs().size(), loses ? 2u : 3u);
+    for (const Hemicubes::Cost& cost : chosen.costs())
+      EXPECT_TRUE(!loses || cost.visibility != HemicubeVisibility::itemBuffer);
+    EXPECT_TRUE(!loses || chosen.visibility() != HemicubeVisibility::itemBuffer);
+  }
 }
 
 TEST_F(HemicubeVisibilityTest, SolutionsAgreeAndAStoppedOneGoesOnAsItBegan) {
