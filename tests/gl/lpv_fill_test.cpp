@@ -430,8 +430,9 @@ TEST_F(LpvHalfStall, SixteenBitSumsStopGrowingAndThirtyTwoBitSumsDoNot) {
                "layout(location = 0) out vec4 sum;\nuniform float value;\nvoid main() { sum = vec4(value); }\n");
   gl::ProgramLibrary programs(folder.path());
   // OpenGL leaves open how a blended half is rounded. To the nearest, a sum stops where the value is less than half a
-  // unit in the last place; cut off, where it is less than a whole one.
-  const bool nearest = blended(programs, gl::Format::rgba16f, 1.0f + 0.75f / 1024.0f, 1) > 1.0;
+  // unit in the last place; cut off, where it is less than a whole one. Of 1 + u, four times, u the last place of 1,
+  // the third sum is 3 + 3u in units of 2u, and the fourth in units of 4u: 4 or 4 + 4u.
+  const bool nearest = blended(programs, gl::Format::rgba16f, 1.0f + 1.0f / 1024.0f, 4) > 4.0;
   std::cout << "[ measured ] blended 16-bit sums " << (nearest ? "round to the nearest" : "cut off") << "\n";
   struct Row {
     float value;

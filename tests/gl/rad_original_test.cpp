@@ -445,7 +445,7 @@ TEST_F(RadOriginal, ShowLooksIntoRoomsAndDrawsBackCornersAndMesh) {
   for (std::size_t i = 0; i < plain.rgba.size(); i += 4)
     walls += plain.rgba[i] == 0 && plain.rgba[i + 1] == 0 && plain.rgba[i + 2] == 0;
   EXPECT_GT(walls, 200 * 150 / 5);
-  EXPECT_EQ(plain.rgba[0], 26);
+  EXPECT_NEAR(plain.rgba[0], 25.5, 0.5);  // of a tenth: either way
   EXPECT_GT(differing(plain, picture(true, false)), 20);
   EXPECT_LT(differing(plain, picture(true, false)), 2000);
   EXPECT_GT(differing(plain, picture(false, true)), 500);

@@ -1,6 +1,8 @@
 #include "support/lpv_on_gl.hpp"
 
 #include "base/error.hpp"
+#include "gl/pass.hpp"
+#include "support/temp_folder.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -140,6 +142,53 @@ double relativeError(const twin::VolumeRgb& expected, const twin::VolumeRgb& act
   for (std::size_t channel = 0; channel < 3; ++channel)
     error = std::max(error, relativeError(expected[channel], actual[channel]));
   return error;
+}
+
+double filterStep() {
+  static const double step = [] {
+    const TempFolder folder;
+    folder.write("filter.comp",
+                 "layout(local_size_x = 64) in;\nlayout(binding = 0) uniform sampler2D ramp;\n"
+                 "layout(std430, binding = 0) writeonly buffer Read { float read[]; };\n"
+                 "void main() {\n  float x = (float(gl_GlobalInvocationID.x) + 0.5) / 4096.0;\n"
+                 "  read[gl_GlobalInvocationID.x] = textureLod(ramp, vec2(0.25 + 0.5 * x, 0.5), 0.0).x;\n}\n");
+    gl::ProgramLibrary programs(folder.path());
+    gl::Texture ramp("ramp", gl::Format::r32f, glm::ivec2(2, 1),
+                     {.minFilter = gl::Filter::linear, .magFilter = gl::Filter::linear});
+    constexpr float kRamp[2] = {0.0f, 1.0f};
+    ramp.upload(gl::Texels::redFloat, kRamp);
+    const gl::Buffer read("read", 4096 * sizeof(float), nullptr, gl::Usage::dynamicRead);
+    {
+      const gl::ComputePass pass("filter", gl::Barrier::bufferUpdate);
+      programs.loadCompute("filter", "filter.comp").use();
+      ramp.bind(0);
+      read.bindStorage(0);
+      pass.dispatch(glm::ivec3(4096, 1, 1), glm::ivec3(64, 1, 1));
+    }
+    double most = 0.0, i = 0.5;
+    for (const float weight : read.read<float>())
+      most = std::max(most, std::abs(static_cast<double>(weight) - i++ / 4096.0));
+    return most < 1e-5 ? 0.0 : most;
+  }();
+  return step;
+}
+
+double offByFilters(const glm::dvec3& p, std::span<const double> cellSizes,
+                    const std::function<double(const glm::dvec3&)>& lookup) {
+  if (filterStep() == 0.0) return 0.0;
+  const double here = lookup(p);
+  double off = 0.0;
+  for (const double size : cellSizes)
+    for (int axis = 0; axis < 3; ++axis) {
+      double most = 0.0;
+      for (const double way : {-filterStep(), filterStep()}) {
+        glm::dvec3 moved = p;
+        moved[axis] += way * size;
+        most = std::max(most, std::abs(lookup(moved) - here));
+      }
+      off += most;
+    }
+  return off;
 }
 
 std::vector<Cascade> unitCascade(int cells, double cellSize) {

@@ -6,6 +6,7 @@
 #include "lpv/light_propagation_volume.hpp"
 #include "support/lpv_twin.hpp"
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -62,6 +63,13 @@ double relativeError(const twin::Volume& expected, const twin::Volume& actual);
 double relativeError(const twin::VolumeRgb& expected, const twin::VolumeRgb& actual);
 /// What that may be with 32-bit floats.
 inline constexpr double kFullTolerance = 1e-5;
+
+/// By how much the weights of linear filters may be off: 0 where the driver takes them to 32 bits; with the 8 bits of
+/// most GPUs 1/512. Measured once.
+double filterStep();
+/// What that may do to a lookup of grids of these cells at p: `lookup` where each grid is moved by as many cells.
+double offByFilters(const glm::dvec3& p, std::span<const double> cellSizes,
+                    const std::function<double(const glm::dvec3&)>& lookup);
 
 /// One cascade with its minimum in the origin.
 std::vector<Cascade> unitCascade(int cells, double cellSize = 1.0);
