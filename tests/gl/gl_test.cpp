@@ -644,6 +644,9 @@ TEST_F(GlPasses, SetTheirStateWhateverWasBefore) {
       draw(1.0f, 0.5f);  // nearer than the clear
       draw(2.0f, 0.75f);  // behind: hidden
     }
+    GLint bound = -1;
+    glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &bound);
+    EXPECT_EQ(bound, 0);  // so that shaders may read what was drawn
     if (poisoned) poison();
     {
       RasterState state;
