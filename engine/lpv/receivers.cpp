@@ -364,8 +364,8 @@ std::vector<LpvReceivers::Shown> LpvReceivers::shown() const {
   if (count == 0) return result;
   for (const shared::LpvReceiver& r : receivers_[0].read<shared::LpvReceiver>(count)) {
     if (r.triangle == LPV_UNPLACED || r.triangle == LPV_NOWHERE || r.paths == 0) continue;
-    result.push_back({r.position, r.normal, r.shown, r.presence, glm::ivec3(r.cell), r.cell.w / LPV_FACES,
-                      r.cell.w % LPV_FACES});
+    result.push_back(
+        {r.position, r.normal, r.shown, r.presence, glm::ivec3(r.cell), r.cell.w / LPV_FACES, r.cell.w % LPV_FACES});
   }
   return result;
 }
@@ -377,6 +377,15 @@ void LpvReceivers::collect(bool wait) {
     counts_.waiting = words[7];
     counts_.frame = words[8];
   }
+}
+
+std::size_t LpvReceivers::mostFrames() const {
+  const std::size_t lit = lit_.bytes() / sizeof(GLuint), lists = (capacity_ + lit - 1) / lit;
+  const auto paths = static_cast<std::size_t>(settings_.rays);
+  const std::size_t each = settings_.transport == LpvTransport::gather
+                               ? 1
+                               : (static_cast<std::size_t>(settings_.samples) + paths - 1) / paths;
+  return (lists + 1) * each + 1;
 }
 
 double LpvReceivers::mostTurns() const {

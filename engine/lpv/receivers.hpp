@@ -101,6 +101,8 @@ class LpvReceivers {
   const gl::Texture& irradiance() const { return irradiance_; }
   /// Of a submission, at most: the list of receivers that it works on ends there (gl/pieces.hpp).
   double mostTurns() const;
+  /// Frames after which no receiver of a view that stands still lacks paths, at the latest.
+  std::size_t mostFrames() const;
   std::size_t gpuBytes() const;
 
  private:

@@ -370,7 +370,11 @@ void Renderer::renderToTheEnd(const Camera& camera) {
   renderFrame(camera, camera, {true, false});
   if (!receivers_) return;
   receivers_->collect(true);
-  while (receivers_->receivers().counts().waiting > 0) {
+  const LpvReceivers& receivers = receivers_->receivers();
+  for (std::size_t frames = 0; receivers.counts().waiting > 0; ++frames) {
+    if (frames > receivers.mostFrames())
+      throw Error(ErrorKind::fault, fmt::format("internal error: after {} frames {} receivers of {} still lack light",
+                                                frames, receivers.counts().waiting, receivers.counts().receivers));
     renderFrame(camera, camera, {false, false});
     receivers_->collect(true);
   }

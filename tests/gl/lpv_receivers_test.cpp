@@ -7,6 +7,7 @@
 // is of one value; kSignificant of these are allowed.
 #include "base/angles.hpp"
 #include "base/error.hpp"
+#include "base/files.hpp"
 #include "lpv/bounce_points.hpp"
 #include "lpv/emission_points.hpp"
 #include "measure/image_errors.hpp"
@@ -18,6 +19,7 @@
 #include "support/long_tests.hpp"
 #include "support/path_scenes.hpp"
 #include "support/pixel_rays.hpp"
+#include "support/temp_folder.hpp"
 #include "walk/scene_views.hpp"
 
 #include <fmt/format.h>
@@ -25,6 +27,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <functional>
 #include <iostream>
 #include <map>
@@ -183,6 +186,26 @@ TEST_F(LpvReceiversGl, AFloorUnderAConstantSky) {
       for (int c = 0; c < 3; ++c) ASSERT_NEAR(p[c] / (0.5f * builder.scene().environment->radiance[c]), 1.0f, 1e-5f);
   }
   EXPECT_EQ(largestValue(picture(builder.scene(), kAboveFloor, settings(1, 16, Component::indirect)).image), 0.0);
+}
+
+// A driver on which paths do not count would be waited for without end.
+TEST_F(LpvReceiversGl, ThatStillWaitWhenAllPathsAreTracedAreAnError) {
+  const test::TempFolder folder;
+  std::filesystem::copy(LUCERNA_SOURCE_DIR "/shaders", folder.path(), std::filesystem::copy_options::recursive);
+  std::string text = readFileText(folder / "lpv/receivers/paths.comp");
+  const std::string counts = "receivers[index].paths = paths;";
+  ASSERT_NE(text.find(counts), std::string::npos);
+  folder.write("lpv/receivers/paths.comp", text.erase(text.find(counts), counts.size()));
+  SceneBuilder builder = floorAlone();
+  builder.scene().environment->radiance = glm::vec3(1.0f);
+  gl::ProgramLibrary broken(folder.path());
+  Renderer renderer(context(), broken, builder.scene(), settings(1, 16));
+  try {
+    renderer.renderToTheEnd(kAboveFloor);
+    ADD_FAILURE() << "it ended";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string_view(error.what()).find("still lack light"), std::string_view::npos) << error.what();
+  }
 }
 
 TEST_F(LpvReceiversGl, AFloorUnderAPictureOfTheSky) {
