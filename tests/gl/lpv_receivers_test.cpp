@@ -208,6 +208,30 @@ TEST_F(LpvReceiversGl, ThatStillWaitWhenAllPathsAreTracedAreAnError) {
   }
 }
 
+// What found no place among the listed, and is not seen any more, shows nothing and waits for nothing.
+TEST_F(LpvReceiversGl, ThoseWithoutAnyPathThatAreNotSeenDoNotWait) {
+  const test::TempFolder folder;
+  std::filesystem::copy(LUCERNA_SOURCE_DIR "/shaders", folder.path(), std::filesystem::copy_options::recursive);
+  const auto change = [&](const char* file, const std::string& from, const std::string& to) {
+    std::string text = readFileText(folder / file);
+    ASSERT_NE(text.find(from), std::string::npos);
+    folder.write(file, text.replace(text.find(from), from.size(), to));
+  };
+  change("lpv/receivers/list.comp", "place >= mostLit", "place >= 100u");
+  change("lpv/receivers/paths.comp", "uint(lit.length())", "100u");
+  SceneBuilder builder = floorAlone();
+  builder.scene().environment->radiance = glm::vec3(1.0f);
+  gl::ProgramLibrary library(folder.path());
+  Renderer renderer(context(), library, builder.scene(), settings(1, 16));
+  renderer.render(kAboveFloor);
+  renderer.drain();
+  const std::uint64_t before = renderer.receivers()->counts().receivers;
+  EXPECT_GT(before, 100u);
+  std::cout << "[ measured ] receivers " << before << ", waiting " << renderer.receivers()->counts().waiting << "\n";
+  renderer.renderToTheEnd(lookingAt({0, 8, 0.1}, {0, 20, 0}, 0.9));  // nothing but the sky
+  EXPECT_EQ(renderer.receivers()->counts().waiting, 0u);
+}
+
 TEST_F(LpvReceiversGl, AFloorUnderAPictureOfTheSky) {
   // Rows of radiance 8, 2, 1, 1/2 above the horizon, of equal height each: E = sum of L pi (sin^2 of the angle to the
   // zenith, from border to border). And in one column of eight a lamp ten times as bright.

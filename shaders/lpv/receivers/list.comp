@@ -58,9 +58,10 @@ void main() {
     }
   }
   if (triangle == LPV_NOWHERE) return;
-  // also if it is not needed itself, but is looked up next to needed ones
-  bool fades = countsFading && receivers[index].presence < fullPresence(receivers[index].paths);
-  bool lacksPaths = receivers[index].paths < pathTarget &&
+  // also if it is not needed itself, but is looked up next to needed ones; not without any path, as it shows nothing
+  uint paths = receivers[index].paths;
+  bool fades = countsFading && paths > 0u && receivers[index].presence < fullPresence(paths);
+  bool lacksPaths = paths < pathTarget &&
                     (receivers[index].born == receiving.frame || texelFetch(lpvSeen, int(index)).x == receiving.frame);
   if (!fades && !lacksPaths) return;
   uint place = atomicAdd(work.waiting, 1u);
