@@ -7,6 +7,7 @@
 // is of one value; kSignificant of these are allowed.
 #include "base/angles.hpp"
 #include "base/error.hpp"
+#include "base/data.hpp"
 #include "base/files.hpp"
 #include "lpv/bounce_points.hpp"
 #include "lpv/emission_points.hpp"
@@ -191,7 +192,7 @@ TEST_F(LpvReceiversGl, AFloorUnderAConstantSky) {
 // A driver on which paths do not count would be waited for without end.
 TEST_F(LpvReceiversGl, ThatStillWaitWhenAllPathsAreTracedAreAnError) {
   const test::TempFolder folder;
-  std::filesystem::copy(LUCERNA_SOURCE_DIR "/shaders", folder.path(), std::filesystem::copy_options::recursive);
+  std::filesystem::copy(dataFolder() / "shaders", folder.path(), std::filesystem::copy_options::recursive);
   std::string text = readFileText(folder / "lpv/receivers/paths.comp");
   const std::string counts = "receivers[index].paths = paths;";
   ASSERT_NE(text.find(counts), std::string::npos);
@@ -211,7 +212,7 @@ TEST_F(LpvReceiversGl, ThatStillWaitWhenAllPathsAreTracedAreAnError) {
 // What found no place among the listed, and is not seen any more, shows nothing and waits for nothing.
 TEST_F(LpvReceiversGl, ThoseWithoutAnyPathThatAreNotSeenDoNotWait) {
   const test::TempFolder folder;
-  std::filesystem::copy(LUCERNA_SOURCE_DIR "/shaders", folder.path(), std::filesystem::copy_options::recursive);
+  std::filesystem::copy(dataFolder() / "shaders", folder.path(), std::filesystem::copy_options::recursive);
   const auto change = [&](const char* file, const std::string& from, const std::string& to) {
     std::string text = readFileText(folder / file);
     ASSERT_NE(text.find(from), std::string::npos);

@@ -1,6 +1,7 @@
 // Three ways to tell what a hemicube's pixels see: each against closed forms, their rows against one another, and the
 // choice among them.
 #include "base/error.hpp"
+#include "base/data.hpp"
 #include "base/files.hpp"
 #include "radiosity/hemicubes.hpp"
 #include "radiosity/solution.hpp"
@@ -185,7 +186,7 @@ TEST_F(HemicubeVisibilityTest, TheCheapestIsChosenAndTheOthersAreGone) {
 
 TEST_F(HemicubeVisibilityTest, AnItemBufferThatLosesTrianglesIsNotChosen) {
   const test::TempFolder folder;
-  std::filesystem::copy(LUCERNA_SOURCE_DIR "/shaders", folder.path(), std::filesystem::copy_options::recursive);
+  std::filesystem::copy(dataFolder() / "shaders", folder.path(), std::filesystem::copy_options::recursive);
   const RadiosityMesh mesh = makePatches(litCube(5), {});
   HemicubeSettings settings;
   settings.worthMeasuring = 0.0;
