@@ -177,23 +177,26 @@ Hemicubes::Hemicubes(gl::ProgramLibrary& programs, const gl::Capabilities& capab
                                   {"SHARED_STACK", asksForSources ? rays_->sharedStack() : 0}});
 }
 
+// A driver's rasteriser may lose triangles, as NVIDIA's did (docs/drivers.md): the item buffer must see what raster
+// sees, but for some pixels along silhouettes.
+bool Hemicubes::seesAsRaster(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities,
+                             Hemicubes& drawn) const {
+  HemicubeSettings settings = settings_;
+  settings.visibility = HemicubeVisibility::raster;
+  Hemicubes raster(programs, capabilities, *mesh_, settings, rays_);
+  const double allowed = 0.01 + 4.0 / (3.0 * settings.resolution * settings.resolution);
+  for (int k = 0; k < kCompared; ++k) {
+    const int patch = static_cast<int>(static_cast<std::int64_t>(patchCount_ - 1) * k / (kCompared - 1));
+    const auto seen = [patch](Hemicubes& hemicubes) {
+      const FormFactorRows row = rowsOf(hemicubes.draw(patch, 1, 0));
+      return static_cast<double>(row.fronts[0]) + static_cast<double>(row.backs[0]);
+    };
+    if (std::abs(seen(drawn) - seen(raster)) > allowed) return false;
+  }
+  return true;
+}
+
 void Hemicubes::choose(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities) {
-  // A driver's rasteriser may lose triangles (NVIDIA's does, docs/drivers.md): the item buffer must see what raster
-  // sees, but for some pixels along silhouettes.
-  const double allowed = 0.01 + 4.0 / (3.0 * settings_.resolution * settings_.resolution);
-  std::vector<double> seenByRaster;
-  const auto seesAsRaster = [&](Hemicubes& hemicubes) {
-    std::vector<double> seen;
-    for (int k = 0; k < kCompared; ++k) {
-      const FormFactorRows row = rowsOf(
-          hemicubes.draw(static_cast<int>(static_cast<std::int64_t>(patchCount_ - 1) * k / (kCompared - 1)), 1, 0));
-      seen.push_back(static_cast<double>(row.fronts[0]) + static_cast<double>(row.backs[0]));
-    }
-    if (seenByRaster.empty()) seenByRaster = seen;
-    for (std::size_t k = 0; k < seen.size(); ++k)
-      if (std::abs(seen[k] - seenByRaster[k]) > allowed) return false;
-    return true;
-  };
   // Raster first: if all the work takes it less time than compiling and measuring the others would, they are skipped.
   for (const HemicubeVisibility one :
        {HemicubeVisibility::raster, HemicubeVisibility::rays, HemicubeVisibility::itemBuffer}) {
@@ -210,7 +213,7 @@ void Hemicubes::choose(gl::ProgramLibrary& programs, const gl::Capabilities& cap
       const double took = std::chrono::duration<double, std::milli>(Clock::now() - start).count() / count;
       if (k == 1 || (k == 2 && took < cost.milliseconds)) cost.milliseconds = took;
     }
-    if (!seesAsRaster(hemicubes) && one == HemicubeVisibility::itemBuffer) {
+    if (one == HemicubeVisibility::itemBuffer && !seesAsRaster(programs, capabilities, hemicubes)) {
       logWarning("radiosity: on this driver the item buffer loses what rays and raster see, so it is not used");
       continue;
     }

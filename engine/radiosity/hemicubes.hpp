@@ -135,6 +135,7 @@ class Hemicubes {
   bool listsKept() const { return settings_.visibility != HemicubeVisibility::raster; }
   Frame frameOf(int patch, int roll) const;
   void choose(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities);
+  bool seesAsRaster(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, Hemicubes& drawn) const;
   void begin(const gl::Program& program, int first, int count) const;
 
   const RadiosityMesh* mesh_;

@@ -7,20 +7,18 @@
 // is of one value; kSignificant of these are allowed.
 #include "base/angles.hpp"
 #include "base/error.hpp"
-#include "base/data.hpp"
-#include "base/files.hpp"
 #include "lpv/bounce_points.hpp"
 #include "lpv/emission_points.hpp"
 #include "measure/image_errors.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "rays/light_table.hpp"
 #include "render/renderer.hpp"
+#include "support/faulty_shaders.hpp"
 #include "support/form_factor_twin.hpp"
 #include "support/largest_difference.hpp"
 #include "support/long_tests.hpp"
 #include "support/path_scenes.hpp"
 #include "support/pixel_rays.hpp"
-#include "support/temp_folder.hpp"
 #include "walk/scene_views.hpp"
 
 #include <fmt/format.h>
@@ -28,7 +26,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <functional>
 #include <iostream>
 #include <map>
@@ -191,15 +188,11 @@ TEST_F(LpvReceiversGl, AFloorUnderAConstantSky) {
 
 // A driver on which paths do not count would be waited for without end.
 TEST_F(LpvReceiversGl, ThatStillWaitWhenAllPathsAreTracedAreAnError) {
-  const test::TempFolder folder;
-  std::filesystem::copy(dataFolder() / "shaders", folder.path(), std::filesystem::copy_options::recursive);
-  std::string text = readFileText(folder / "lpv/receivers/paths.comp");
-  const std::string counts = "receivers[index].paths = paths;";
-  ASSERT_NE(text.find(counts), std::string::npos);
-  folder.write("lpv/receivers/paths.comp", text.erase(text.find(counts), counts.size()));
+  const test::FaultyShaders shaders;
+  shaders.plant("lpv/receivers/paths.comp", "receivers[index].paths = paths;", "");
   SceneBuilder builder = floorAlone();
   builder.scene().environment->radiance = glm::vec3(1.0f);
-  gl::ProgramLibrary broken(folder.path());
+  gl::ProgramLibrary broken(shaders.path());
   Renderer renderer(context(), broken, builder.scene(), settings(1, 16));
   try {
     renderer.renderToTheEnd(kAboveFloor);
@@ -211,24 +204,17 @@ TEST_F(LpvReceiversGl, ThatStillWaitWhenAllPathsAreTracedAreAnError) {
 
 // What found no place among the listed, and is not seen any more, shows nothing and waits for nothing.
 TEST_F(LpvReceiversGl, ThoseWithoutAnyPathThatAreNotSeenDoNotWait) {
-  const test::TempFolder folder;
-  std::filesystem::copy(dataFolder() / "shaders", folder.path(), std::filesystem::copy_options::recursive);
-  const auto change = [&](const char* file, const std::string& from, const std::string& to) {
-    std::string text = readFileText(folder / file);
-    ASSERT_NE(text.find(from), std::string::npos);
-    folder.write(file, text.replace(text.find(from), from.size(), to));
-  };
-  change("lpv/receivers/list.comp", "place >= mostLit", "place >= 100u");
-  change("lpv/receivers/paths.comp", "uint(lit.length())", "100u");
+  const test::FaultyShaders shaders;
+  shaders.plant("lpv/receivers/list.comp", "place >= mostLit", "place >= 100u");
+  shaders.plant("lpv/receivers/paths.comp", "uint(lit.length())", "100u");
   SceneBuilder builder = floorAlone();
   builder.scene().environment->radiance = glm::vec3(1.0f);
-  gl::ProgramLibrary library(folder.path());
+  gl::ProgramLibrary library(shaders.path());
   Renderer renderer(context(), library, builder.scene(), settings(1, 16));
   renderer.render(kAboveFloor);
   renderer.drain();
-  const std::uint64_t before = renderer.receivers()->counts().receivers;
-  EXPECT_GT(before, 100u);
-  std::cout << "[ measured ] receivers " << before << ", waiting " << renderer.receivers()->counts().waiting << "\n";
+  EXPECT_GT(renderer.receivers()->counts().receivers, 100u);
+  EXPECT_GT(renderer.receivers()->counts().waiting, 0u);
   renderer.renderToTheEnd(lookingAt({0, 8, 0.1}, {0, 20, 0}, 0.9));  // nothing but the sky
   EXPECT_EQ(renderer.receivers()->counts().waiting, 0u);
 }

@@ -182,7 +182,6 @@ struct MemoryTaken {
 };
 
 MemoryTaken memoryTaken() {
-  glFinish();
   malloc_trim(0);
   std::ifstream file("/proc/self/statm");
   double pages = 0.0, resident = 0.0;
@@ -191,22 +190,17 @@ MemoryTaken memoryTaken() {
   return {resident * static_cast<double>(sysconf(_SC_PAGESIZE)), static_cast<double>(heap.uordblks + heap.hblkhd)};
 }
 
-/// `step` is called so often, and each quarter takes what its least step leaves. A leak grows in every quarter; a
-/// driver's one step (a pool that fills) in one. llvmpipe's threads keep 0.6 MiB or more for each frame that was in
-/// flight at once, and what it drew, so ctest runs these tests without threads.
+/// `step` is called so often. A leak grows in every quarter; a driver's one step (a pool that fills) in one. llvmpipe's
+/// threads keep 0.6 MiB or more for each frame that was in flight at once, so ctest runs these tests without threads.
 template <class Step>
 void expectFlat(const char* what, int times, const Step& step) {
-  constexpr double kMost = std::numeric_limits<double>::infinity();
   std::array<MemoryTaken, 4> taken;
-  taken.fill({kMost, kMost});
   for (int i = 0; i < times; ++i) {
     step(i);
-    const MemoryTaken now = memoryTaken();
-    MemoryTaken& quarter = taken.at(static_cast<std::size_t>(4 * i / times));
-    quarter = {std::min(quarter.resident, now.resident), std::min(quarter.heap, now.heap)};
+    if ((i + 1) % (times / 4) == 0) taken.at(static_cast<std::size_t>((i + 1) / (times / 4) - 1)) = memoryTaken();
   }
   for (const auto member : {&MemoryTaken::resident, &MemoryTaken::heap}) {
-    double least = kMost;
+    double least = std::numeric_limits<double>::infinity();
     std::printf("%s, %s:", what, member == &MemoryTaken::heap ? "heap" : "resident");
     for (std::size_t quarter = 0; quarter < 4; ++quarter) {
       std::printf(" %.2f", taken[quarter].*member / 1048576.0);

@@ -1,10 +1,9 @@
 // Three ways to tell what a hemicube's pixels see: each against closed forms, their rows against one another, and the
 // choice among them.
 #include "base/error.hpp"
-#include "base/data.hpp"
-#include "base/files.hpp"
 #include "radiosity/hemicubes.hpp"
 #include "radiosity/solution.hpp"
+#include "support/faulty_shaders.hpp"
 #include "support/gl_fixture.hpp"
 #include "support/radiosity_scenes.hpp"
 #include "support/temp_folder.hpp"
@@ -13,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <numeric>
 
 namespace lucerna {
@@ -185,19 +183,14 @@ TEST_F(HemicubeVisibilityTest, TheCheapestIsChosenAndTheOthersAreGone) {
 }
 
 TEST_F(HemicubeVisibilityTest, AnItemBufferThatLosesTrianglesIsNotChosen) {
-  const test::TempFolder folder;
-  std::filesystem::copy(dataFolder() / "shaders", folder.path(), std::filesystem::copy_options::recursive);
+  const test::FaultyShaders shaders;
   const RadiosityMesh mesh = makePatches(litCube(5), {});
   HemicubeSettings settings;
   settings.worthMeasuring = 0.0;
   for (const bool loses : {false, true}) {
-    if (loses) {
-      std::string text = readFileText(folder / "radiosity/hemicube_item.frag");
-      const std::string all = "void main() {";
-      text.replace(text.find(all), all.size(), all + " if (fItem % 20u == 0u) discard;");
-      folder.write("radiosity/hemicube_item.frag", text);
-    }
-    gl::ProgramLibrary library(folder.path());
+    if (loses)
+      shaders.plant("radiosity/hemicube_item.frag", "void main() {", "void main() { if (fItem % 20u == 0u) discard;");
+    gl::ProgramLibrary library(shaders.path());
     const Hemicubes chosen(library, capabilities(), mesh, settings);
     EXPECT_EQ(chosen.costs().size(), loses ? 2u : 3u);
     for (const Hemicubes::Cost& cost : chosen.costs())
