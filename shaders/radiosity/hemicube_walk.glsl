@@ -2,6 +2,7 @@
 // distance. An invocation takes one triangle and several hemicubes. Triangles that span more than kMostPixels of a face
 // are listed for a separate pass, one work group per triangle, one lane per row. This keeps lanes busy, and no loop
 // comes near the 65,535 iterations after which Mesa's software renderer leaves any shader's loops.
+#include "lib/clamped_int.glsl"
 #include "radiosity/hemicube.glsl"
 
 layout(local_size_x = 64) in;
@@ -56,10 +57,10 @@ FaceTriangle onFace(int face, Triangle t) {
     high = min(high, vec2(max(px.x, max(px.y, px.z)), max(py.x, max(py.y, py.z))));
   }
   // Pixel centres are at (i + 1/2 - N/2) / (N/2). The bounds are slightly wider, since the quotients are rounded.
-  r.low = ivec2(ceil((low - vec2(-1.0, bottom)) * halfSize - 0.501));
-  r.high = ivec2(floor((high - vec2(-1.0, bottom)) * halfSize - 0.499));
-  r.low = max(r.low, ivec2(0));
-  r.high = min(r.high, ivec2(faceSize - 1, face == 0 ? faceSize - 1 : faceSize / 2 - 1));
+  // A triangle beside the face has low > high. Its corners may lie as far outside as floats reach.
+  ivec2 last = ivec2(faceSize - 1, face == 0 ? faceSize - 1 : faceSize / 2 - 1);
+  r.low = clampedInt(ceil((low - vec2(-1.0, bottom)) * halfSize - 0.501), ivec2(0), last + 1);
+  r.high = clampedInt(floor((high - vec2(-1.0, bottom)) * halfSize - 0.499), ivec2(-1), last);
   if (det <= 0.0) r.high = r.low - 1;
   return r;
 }
@@ -86,8 +87,9 @@ void beginRow(inout Walk w, FaceTriangle t) {
   // end. Slightly wider, since quotients are rounded.
   vec3 first = (w.slope.xyz - w.rowValue.xyz) * w.low, last = (w.slope.xyz + w.rowValue.xyz) * w.high;
   vec2 from = clamp(vec2(highest(first), highest(last)), 0.0, 2.1) * halfSize + 0.49;  // ceil(v - 0.51)
-  w.column = max(t.low.x, int(from.x));
-  w.lastColumn = w.row > t.high.y ? -1 : min(t.high.x, faceSize - 1 - int(from.y));
+  ivec2 pixels = clampedInt(from, ivec2(0), ivec2(2 * faceSize));
+  w.column = max(t.low.x, pixels.x);
+  w.lastColumn = w.row > t.high.y ? -1 : min(t.high.x, faceSize - 1 - pixels.y);
 }
 
 // firstPixel: the face's first pixel.
