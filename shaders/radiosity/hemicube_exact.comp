@@ -12,7 +12,7 @@ uniform vec3 raysOrigin;  // in the hierarchy's space
 #endif
 
 #if ITEMS
-#include "radiosity/hemicube_keep.glsl"
+layout(std430, binding = 7) readonly buffer KeptList { uvec4 keptHead; uvec2 keptList[]; };  // hemicube_keep.glsl
 #endif
 // the slot of the share receives the form factor
 layout(std430, binding = 6) buffer ExactList { uint listed; uint padding; uvec2 list[]; };

@@ -7,7 +7,11 @@
 
 layout(local_size_x = 64) in;
 // slots of form factors (hemicube_sum.comp); begins with an indirect dispatch
+#if LARGE
+layout(std430, binding = 3) readonly buffer LargeList { uint largeGroups, one0, one1, largeCount; uint large[]; };
+#else
 layout(std430, binding = 3) buffer LargeList { uint largeGroups, one0, one1, largeCount; uint large[]; };
+#endif
 uniform int hemicubes;      // in this batch
 uniform int hemicubesEach;  // processed by an invocation, which reads a triangle's corners once for all of them
 const int kMostPixels = 1024;
@@ -125,11 +129,13 @@ bool isLarge(FaceTriangle t) {
   return min(size.x, size.y) > 0 && size.x * size.y > kMostPixels;
 }
 
+#if !LARGE
 void listLarge(int place) {
   uint slot = atomicAdd(largeCount, 1u);
   large[slot] = uint(place);
   atomicMax(largeGroups, min(slot + 1u, kMostGroups));
 }
+#endif
 
 // All 3 N rows of a hemicube: the face and the row in it.
 int rowsPerHemicube() { return 3 * faceSize; }

@@ -2,6 +2,7 @@
 #include "rsm/gather.glsl"
 #include "forward/visible.glsl"
 #include "rsm/work.glsl"
+layout(std430, binding = 1) buffer Work { GatherWork work; };
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(rgba32f, binding = 0) uniform image2D irradianceImage;
 uniform ivec2 firstPixel;  // of a part of the picture

@@ -3,6 +3,7 @@
 #include "rsm/gather.glsl"
 #include "forward/visible.glsl"
 #include "rsm/work.glsl"
+layout(std430, binding = 1) readonly buffer Work { GatherWork work; };
 layout(local_size_x = WORK_GROUP) in;
 layout(rgba32f, binding = 0) uniform image2D irradianceImage;
 layout(binding = 5) uniform usampler2D refusedPixels;

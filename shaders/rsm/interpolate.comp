@@ -3,6 +3,7 @@
 // other pixel is appended to the list for the full gather.
 #include "rsm/fit.glsl"
 #include "rsm/work.glsl"
+layout(std430, binding = 1) buffer Work { GatherWork work; };
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(rgba32f, binding = 0) writeonly uniform image2D irradianceImage;  // w: 0 no surface, 1 interpolated, 2 gathered
 layout(r32ui, binding = 1) writeonly uniform uimage2D refusedPixels;  // x | y << 16, row by row

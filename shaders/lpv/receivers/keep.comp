@@ -2,8 +2,9 @@
 layout(local_size_x = 64) in;
 #include "lpv/receivers/common.glsl"
 #include "lpv/receivers/work.glsl"
+layout(std430, binding = 5) restrict buffer LpvWork { LpvReceiverWork work; };
 layout(std430, binding = 0) readonly restrict buffer LpvReceivers { LpvReceiver before[]; };
-layout(std430, binding = 1) restrict buffer LpvSlots { uint slots[]; };
+layout(std430, binding = 1) writeonly restrict buffer LpvSlots { uint slots[]; };
 layout(std430, binding = 2) writeonly restrict buffer LpvKept { LpvReceiver receivers[]; };
 layout(std430, binding = 3) readonly restrict buffer LpvWorkBefore { uint workBefore[]; };
 

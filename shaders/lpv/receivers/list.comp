@@ -11,6 +11,7 @@ layout(std140, binding = BLOCK_RECEIVER_PATHS) uniform PathBlock { PathConstants
 #include "rays/bvh.glsl"
 #include "lpv/receivers/lookup.glsl"
 #include "lpv/receivers/work.glsl"
+layout(std430, binding = 5) restrict buffer LpvWork { LpvReceiverWork work; };
 #include "lpv/receivers/seen.glsl"
 layout(std430, binding = 0) restrict buffer LpvReceivers { LpvReceiver receivers[]; };
 layout(std430, binding = 1) writeonly restrict buffer LpvLit { uint lit[]; };
@@ -36,7 +37,7 @@ bool isBrightBeside(ivec4 cell, vec3 light) {
 
 void main() {
   uint index = gl_GlobalInvocationID.x;
-  if (index >= receiverCount()) return;
+  if (index >= receiverCount(work.wanted)) return;
   uint triangle = receivers[index].triangle;
   if (triangle == LPV_UNPLACED) {
     Hit hit;

@@ -7,15 +7,16 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "lpv/receivers/common.glsl"
 #include "lpv/receivers/work.glsl"
+layout(std430, binding = 5) restrict buffer LpvWork { LpvReceiverWork work; };
 #include "lpv/receivers/cascade_weight.glsl"
 #include "forward/visible.glsl"
 layout(binding = 7) uniform usamplerBuffer lpvSlots;  // 0: empty, else the receiver's index + 1
 #if CLAIM
 layout(binding = 1) uniform usamplerBuffer lpvKeys;
-layout(std430, binding = 0) restrict buffer LpvReceivers { LpvReceiver receivers[]; };
-layout(std430, binding = 1) restrict buffer LpvSlots { uint slots[]; };
+layout(std430, binding = 0) writeonly restrict buffer LpvReceivers { LpvReceiver receivers[]; };
+layout(std430, binding = 1) writeonly restrict buffer LpvSlots { uint slots[]; };
 #else
-layout(std430, binding = 0) restrict buffer LpvSeen { uint seen[]; };
+layout(std430, binding = 0) writeonly restrict buffer LpvSeen { uint seen[]; };
 layout(std430, binding = 1) restrict buffer LpvKeys { uint keys[]; };
 #endif
 layout(std430, binding = 2) readonly restrict buffer LpvAround { LpvAroundPoint around[]; };

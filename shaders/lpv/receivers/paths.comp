@@ -27,6 +27,7 @@ layout(std140, binding = BLOCK_RECEIVER_PATHS) uniform PathBlock { PathConstants
 #endif
 layout(std430, binding = 0) restrict buffer LpvReceivers { LpvReceiver receivers[]; };
 #include "lpv/receivers/work.glsl"
+layout(std430, binding = 5) readonly restrict buffer LpvWork { LpvReceiverWork work; };
 #include "lpv/receivers/surface.glsl"
 layout(std430, binding = 1) readonly restrict buffer LpvLit { uint lit[]; };
 shared vec3 found[LPV_LANES];

@@ -9,6 +9,7 @@ layout(std140, binding = BLOCK_RECEIVER_PATHS) uniform PathBlock { PathConstants
 #include "rays/bvh.glsl"
 #include "lpv/receivers/common.glsl"
 #include "lpv/receivers/work.glsl"
+layout(std430, binding = 5) restrict buffer LpvWork { LpvReceiverWork work; };
 #include "lpv/receivers/seen.glsl"
 layout(std430, binding = 0) writeonly restrict buffer LpvReceivers { LpvReceiver receivers[]; };
 layout(std430, binding = 1) writeonly restrict buffer LpvLit { uint lit[]; };

@@ -5,6 +5,7 @@
 layout(local_size_x = 64) in;
 #include "lpv/receivers/common.glsl"
 #include "lpv/receivers/work.glsl"
+layout(std430, binding = 5) readonly restrict buffer LpvWork { LpvReceiverWork work; };
 layout(std430, binding = 0) restrict buffer LpvReceivers { LpvReceiver receivers[]; };
 layout(LPV_FORMAT, binding = 0) writeonly uniform image3D lpvReceived;
 #include "lpv/receivers/neighbours.glsl"
@@ -56,7 +57,7 @@ vec3 withNeighbours(LpvReceiver receiver) {
 
 void main() {
   uint index = gl_GlobalInvocationID.x;
-  if (index >= receiverCount()) return;
+  if (index >= receiverCount(work.wanted)) return;
   LpvReceiver receiver = receivers[index];
   if (receiver.paths == 0u) return;
   int cascade = receiver.cell.w / LPV_FACES;
