@@ -33,6 +33,7 @@ struct CommonOptions {
   std::string host;  ///< empty: LUCERNA_HOST, else the default
   std::string json;  ///< empty: none
   bool quiet = false;
+  bool checkBarriers = false;  ///< gl/barrier_ledger.hpp
 
   void declare(Command app);
   void apply() const;  ///< checks the requested host and sets the log level

@@ -4,6 +4,7 @@
 #include "base/files.hpp"
 #include "base/log.hpp"
 #include "commands.hpp"
+#include "gl/barrier_ledger.hpp"
 #include "offers.hpp"
 
 #include <fmt/core.h>
@@ -20,6 +21,8 @@ void CommonOptions::declare(Command app) {
         {"window", "egl", "osmesa"});
   app.addOption("--json", json, "write machine-readable results to this file");
   app.addFlag("--quiet", quiet, "no warnings, no progress");
+  app.addFlag("--check-barriers", checkBarriers,
+              "report missing memory barriers as errors; LUCERNA_CHECK_BARRIERS=1 does so too");
 }
 
 std::string CommonOptions::askedHost() const {
@@ -35,6 +38,7 @@ void CommonOptions::apply() const {
 }
 
 std::unique_ptr<Host> CommonOptions::makeHost(bool wantsWindow, const HostOptions& options) const {
+  if (checkBarriers || gl::barriersCheckedByDefault()) gl::checkBarriers();
   const std::string asked = askedHost();
   return asked.empty() ? Host::createDefault(wantsWindow, options) : Host::create(parseHostKind(asked), options);
 }

@@ -77,7 +77,7 @@ int lucerna::demo::runCommands(Command program, const Work& work, int argc, char
     const int code = flushed(work());
     const std::string errors = lucerna::gl::takePendingErrors();
     if (errors.empty()) return code;
-    printError(fmt::format("internal error: OpenGL reports {} at the end of the command", errors));
+    printError(fmt::format("internal error, found at the end of the command: {}", errors));
     return static_cast<int>(lucerna::ErrorKind::fault);
   } catch (const lucerna::Error& error) {
     printError(error.what());

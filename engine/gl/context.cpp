@@ -2,7 +2,9 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "gl/barrier_ledger.hpp"
 #include "gl/limits.hpp"
+#include "gl/wait.hpp"
 #include "host/host.hpp"
 
 #include <set>
@@ -21,12 +23,15 @@ void GLAPIENTRY onDebugMessage(GLenum, GLenum type, GLuint, GLenum severity, GLs
   if (type == GL_DEBUG_TYPE_ERROR) {
     logVerbose("OpenGL error: {}", message);
     static_cast<std::vector<std::string>*>(const_cast<void*>(user))->emplace_back(message);
-  } else if (severity == GL_DEBUG_SEVERITY_HIGH) {
+  } else if (severity == GL_DEBUG_SEVERITY_HIGH || type == GL_DEBUG_TYPE_PERFORMANCE) {
     logVerbose("OpenGL: {}", message);
   }
 }
 
 std::string g_pendingErrors;
+
+/// Of OpenGL 4.5 and KHR_robustness: the error of every call after a reset.
+constexpr GLenum kContextLost = 0x0507;
 
 const char* nameOfError(GLenum error) {
   switch (error) {
@@ -37,6 +42,7 @@ const char* nameOfError(GLenum error) {
     case GL_OUT_OF_MEMORY: return "GL_OUT_OF_MEMORY";
     case GL_STACK_OVERFLOW: return "GL_STACK_OVERFLOW";
     case GL_STACK_UNDERFLOW: return "GL_STACK_UNDERFLOW";
+    case kContextLost: return "GL_CONTEXT_LOST";
     default: return "an unknown error";
   }
 }
@@ -49,9 +55,6 @@ GLenum firstError() {
     if (first == GL_NO_ERROR || error == GL_OUT_OF_MEMORY) first = error;
   return first;
 }
-
-/// Of OpenGL 4.5 and KHR_robustness: the error of every call after a reset.
-constexpr GLenum kContextLost = 0x0507;
 
 /// outOfMemory: the message if memory ran out; place: the last operation, for every other error.
 void throwFirstError(const std::string& outOfMemory, const std::string& place) {
@@ -124,6 +127,8 @@ Context::Context(DebugOutput debugOutput) {
   c.shadingLanguage = string(GL_SHADING_LANGUAGE_VERSION);
   c.softwareRenderer = Host::isSoftwareRenderer(c.renderer);
 
+  setWaitLimit(c.softwareRenderer ? 0.0 : kGpuSeconds);
+
   std::set<std::string> extensions;
   glGetIntegerv(GL_NUM_EXTENSIONS, &c.extensionCount);
   for (GLint i = 0; i < c.extensionCount; ++i)
@@ -168,12 +173,13 @@ Context::Context(DebugOutput debugOutput) {
 
 Context::~Context() {
   glDebugMessageCallback(nullptr, nullptr);
-  if (const GLenum error = firstError(); error != GL_NO_ERROR) g_pendingErrors = nameOfError(error);
+  for (const std::string& error : takeErrors()) g_pendingErrors += (g_pendingErrors.empty() ? "" : "; ") + error;
 }
 
 std::vector<std::string> Context::takeErrors() {
-  for (GLenum error = glGetError(); error != GL_NO_ERROR; error = glGetError())
-    if (errors_.empty()) errors_.push_back("glGetError " + std::to_string(error));
+  if (const GLenum error = firstError(); error != GL_NO_ERROR && errors_.empty()) errors_.push_back(nameOfError(error));
+  if (BarrierLedger* ledger = barrierLedger())
+    for (std::string& finding : ledger->takeFindings()) errors_.push_back(std::move(finding));
   return std::exchange(errors_, {});
 }
 

@@ -51,7 +51,8 @@ void throwIfReset();
 void throwIfError(const std::string& after);
 /// The same for `bytes` of storage that were just requested.
 void throwIfNotAllocated(const std::string& name, std::size_t bytes);
-/// Errors pending when the last context ended, or an empty string; for the end of a command.
+/// Errors and findings (Context::takeErrors) pending when the last context ended, or an empty string; for the end of a
+/// command.
 std::string takePendingErrors();
 
 /// The context of the current host: probes it and listens to its debug output if requested.
@@ -65,8 +66,8 @@ class Context {
 
   const Capabilities& capabilities() const { return capabilities_; }
 
-  /// GL errors reported by the driver since the last call (KHR_debug errors if listening, and glGetError). Tests fail
-  /// on any.
+  /// GL errors reported by the driver since the last call (KHR_debug errors if listening, and glGetError), and findings
+  /// of the barrier ledger (gl/barrier_ledger.hpp). Tests fail on any.
   std::vector<std::string> takeErrors();
 
  private:

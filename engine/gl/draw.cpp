@@ -26,16 +26,14 @@ void clearWords(int attachment, const glm::uvec4& value) {
 
 void readBytes(const Framebuffer& from, const glm::ivec2& corner, const glm::ivec2& size, std::uint8_t* rgba) {
   glBindFramebuffer(GL_FRAMEBUFFER, from.id());
+  waitBeforeReading();
   glReadPixels(corner.x, corner.y, size.x, size.y, GL_RGBA, GL_UNSIGNED_BYTE, rgba);
 }
 
 void readFloats(const Framebuffer& from, const glm::ivec2& corner, const glm::ivec2& size, float* red) {
   glBindFramebuffer(GL_FRAMEBUFFER, from.id());
+  waitBeforeReading();
   glReadPixels(corner.x, corner.y, size.x, size.y, GL_RED, GL_FLOAT, red);
 }
-
-void finish() { glFinish(); }
-
-void flush() { glFlush(); }
 
 }  // namespace lucerna::gl

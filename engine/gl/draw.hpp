@@ -2,6 +2,7 @@
 #pragma once
 
 #include "gl/objects.hpp"
+#include "gl/wait.hpp"
 
 #include <glm/glm.hpp>
 
@@ -31,10 +32,5 @@ void clearWords(int attachment, const glm::uvec4& value);
 /// Reads the first attachment, bottom row first: 8-bit RGBA, or the red channel as floats. Rows without padding.
 void readBytes(const Framebuffer& from, const glm::ivec2& corner, const glm::ivec2& size, std::uint8_t* rgba);
 void readFloats(const Framebuffer& from, const glm::ivec2& corner, const glm::ivec2& size, float* red);
-
-/// Waits until the GPU has finished all submitted work; for measurements.
-void finish();
-/// Ends a submission: the driver is given what was recorded so far.
-void flush();
 
 }  // namespace lucerna::gl

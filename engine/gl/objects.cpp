@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "gl/context.hpp"
 #include "gl/limits.hpp"
+#include "gl/wait.hpp"
 
 #include <algorithm>
 #include <array>
@@ -42,6 +43,11 @@ const Transfer& transferOf(Format format) {
   return kTransfers[0];
 }
 
+// OpenGL orders clears and fills with the draws and dispatches around them. NVIDIA's driver (580.159) does not always:
+// textures filled from a buffer, and buffers cleared by glClearBufferData, showed their content of the frame before
+// (docs/drivers.md). The barrier of all kinds keeps the two apart.
+void waitOutFill() { memoryBarrier(Barrier::all); }
+
 std::pair<GLenum, GLenum> formatAndType(Texels texels) {
   switch (texels) {
     case Texels::redByte: return {GL_RED, GL_UNSIGNED_BYTE};
@@ -57,6 +63,10 @@ std::pair<GLenum, GLenum> formatAndType(Texels texels) {
 }
 
 }  // namespace
+
+void memoryBarrier(Barrier barrier) {
+  if (barrier != Barrier::none) glMemoryBarrier(raw(barrier));
+}
 
 void label(GLenum identifier, GLuint id, const std::string& name) {
   GLint most = 0;
@@ -98,6 +108,7 @@ void Buffer::clear(GLuint value) {
   settle(Barrier::bufferUpdate);
   glBindBuffer(GL_COPY_WRITE_BUFFER, id());
   glClearBufferData(GL_COPY_WRITE_BUFFER, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &value);
+  waitOutFill();
 }
 
 void Buffer::bindUniform(GLuint index) const {
@@ -112,7 +123,7 @@ void Buffer::bindStorage(GLuint index) const {
 }
 
 void Buffer::settle(Barrier barrier) const {
-  if (shadersMayWrite_) glMemoryBarrier(raw(barrier));
+  if (shadersMayWrite_) memoryBarrier(barrier);
 }
 
 void Buffer::copyTo(Buffer& target, std::size_t bytes) const {
@@ -128,6 +139,7 @@ void Buffer::readBytes(void* data, std::size_t bytes) const {
   CHECK(bytes <= bytes_, "{} bytes of {}", bytes, bytes_);
   settle(Barrier::bufferUpdate);
   glBindBuffer(GL_COPY_READ_BUFFER, id());
+  waitBeforeReading();
   glGetBufferSubData(GL_COPY_READ_BUFFER, 0, static_cast<GLsizeiptr>(bytes), data);
   throwIfError("a buffer was read back");
 }
@@ -236,12 +248,12 @@ void Texture::upload(GLenum format, GLenum type, const void* data, int level) {
 void Texture::copyFrom(const Buffer& buffer, std::size_t offset) {
   const Transfer& transfer = transferOf(format_);
   CHECK(levels_ == 1 && offset + bytes() <= buffer.bytes(), "{} bytes at {} of {}", bytes(), offset, buffer.bytes());
-  // Barrier::pixelBuffer by the specification. NVIDIA's driver (580.159) still fills small textures with what the
-  // buffer held before its shaders ran (docs/drivers.md).
-  buffer.settle(Barrier::all);
+  buffer.settle(Barrier::pixelBuffer);
+  waitOutFill();
   glBindBuffer(GL_PIXEL_UNPACK_BUFFER, buffer.id());
   upload(transfer.format, transfer.type, reinterpret_cast<const void*>(offset), 0);
   glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+  waitOutFill();
 }
 
 void Texture::generateMipmaps() {
@@ -262,7 +274,7 @@ void Texture::bindImage(GLuint unit, Access access, int level) const {
 }
 
 void Texture::settle(Barrier barrier) const {
-  if (shadersMayWrite_) glMemoryBarrier(raw(barrier));
+  if (shadersMayWrite_) memoryBarrier(barrier);
 }
 
 std::vector<glm::vec4> Texture::readRgba(int level) const {
@@ -272,6 +284,7 @@ std::vector<glm::vec4> Texture::readRgba(int level) const {
                                 static_cast<std::size_t>(size.z));
   glActiveTexture(GL_TEXTURE0 + kEditUnit);
   glBindTexture(target(), id());
+  waitBeforeReading();
   glGetTexImage(target(), level, GL_RGBA, GL_FLOAT, texels.data());
   throwIfError("a texture was read back");
   return texels;
@@ -282,6 +295,7 @@ std::vector<float> Texture::readDepth() const {
                             static_cast<std::size_t>(size_.z));
   glActiveTexture(GL_TEXTURE0 + kEditUnit);
   glBindTexture(target(), id());
+  waitBeforeReading();
   glGetTexImage(target(), 0, GL_DEPTH_COMPONENT, GL_FLOAT, texels.data());
   throwIfError("a depth texture was read back");
   return texels;
@@ -294,6 +308,7 @@ std::vector<glm::uvec4> Texture::readWords() const {
                                 static_cast<std::size_t>(size_.z));
   glActiveTexture(GL_TEXTURE0 + kEditUnit);
   glBindTexture(target(), id());
+  waitBeforeReading();
   glGetTexImage(target(), 0, GL_RGBA_INTEGER, GL_UNSIGNED_INT, words.data());
   throwIfError("a film was read back");
   return words;
@@ -334,6 +349,7 @@ void clearToZero(std::span<const Texture* const> textures, bool haveClearTexture
       else const_cast<Texture*>(texture)->upload(transfer.format, transfer.type, zeros.data(), level);
     }
   }
+  waitOutFill();
 }
 
 // ---------------------------------------------------------------------------------------------------- Framebuffer

@@ -27,6 +27,9 @@ void deleteVertexArray(GLuint id);
 void deleteSampler(GLuint id);
 }  // namespace detail
 
+/// The one place that issues glMemoryBarrier; none: no call.
+void memoryBarrier(Barrier barrier);
+
 /// Names the object for debuggers, truncated to GL_MAX_LABEL_LENGTH: longer labels are an error [OpenGL 4.3, 20.9].
 void label(GLenum identifier, GLuint id, const std::string& name);
 

@@ -7,7 +7,14 @@
 
 namespace lucerna::gl {
 
+namespace {
+std::string g_lastPass = "none";
+}
+
+const std::string& lastPass() { return g_lastPass; }
+
 void pushDebugGroup(const std::string& name) {
+  g_lastPass = name;
   static const GLint most =
       [] {  // queried once: groups are pushed all the time, and a query stalls drivers with their own threads
         GLint length = 0;

@@ -25,6 +25,9 @@ struct RasterState {
 /// Opens a KHR_debug group; its name is truncated to GL_MAX_DEBUG_MESSAGE_LENGTH. glPopDebugGroup closes it.
 void pushDebugGroup(const std::string& name);
 
+/// The name last given to pushDebugGroup, for messages.
+const std::string& lastPass();
+
 /// A KHR_debug group for its lifetime.
 class DebugGroup {
  public:
@@ -51,11 +54,16 @@ class RasterPass {
   DebugGroup group_;
 };
 
-/// Dispatches compute work; at its end the named barrier makes the results visible.
+/// Dispatches compute work. At its end a barrier makes the results visible to the accesses named; at its beginning one
+/// makes it wait for accesses of earlier draws, which issue none, to what it writes.
 class ComputePass {
  public:
-  ComputePass(const std::string& name, Barrier barrierAtEnd) : group_(name), barrier_(barrierAtEnd) {}
-  ~ComputePass() { glMemoryBarrier(raw(barrier_)); }
+  ComputePass(const std::string& name, Barrier atEnd, Barrier atBegin = Barrier::none) : group_(name), atEnd_(atEnd) {
+    memoryBarrier(atBegin);
+  }
+  ~ComputePass() { memoryBarrier(atEnd_); }
+  ComputePass(const ComputePass&) = delete;
+  ComputePass& operator=(const ComputePass&) = delete;
   /// Dispatches enough groups of `groupSize` to cover `size`.
   void dispatch(const glm::ivec3& size, const glm::ivec3& groupSize) const;
   /// Reads group counts from three words of the buffer at `offset` (bytes), written by an earlier pass that ended with
@@ -64,7 +72,7 @@ class ComputePass {
 
  private:
   DebugGroup group_;
-  Barrier barrier_;
+  Barrier atEnd_;
 };
 
 /// Draws three vertices that cover the picture; `emptyVertexArray` has no attributes.

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "gl/pieces.hpp"
-#include "host/api.hpp"
+#include "gl/wait.hpp"
 
 #include <glm/glm.hpp>
 
@@ -25,7 +25,7 @@ class PicturePieces {
     for (int y = 0; y < picture.y; y += most.y)
       for (int x = 0; x < picture.x; x += most.x) {
         const glm::ivec2 corner(x, y), size = glm::min(most, picture - corner);
-        if (x + y > 0) glFlush();
+        if (x + y > 0) flush();
         draw(corner, size);
         largestTurns_ = std::max(largestTurns_, turnsOfPixel * size.x * size.y);
       }

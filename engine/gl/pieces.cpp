@@ -2,7 +2,7 @@
 
 #include "base/clock.hpp"
 #include "base/error.hpp"
-#include "host/api.hpp"
+#include "gl/wait.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -37,12 +37,12 @@ void PieceSize::restart() { units_ = std::min(units_, first_); }
 void PieceSize::setTurnsOfUnit(double turnsOfUnit) { turnsOfUnit_ = turnsOfUnit; }
 
 PieceClock::PieceClock() {
-  glFinish();
+  finish();
   start_ = Clock::now();
 }
 
 double PieceClock::seconds() const {
-  glFinish();
+  finish();
   return secondsSince(start_);
 }
 

@@ -1,5 +1,7 @@
 #include "gl/read_back.hpp"
 
+#include "gl/wait.hpp"
+
 namespace lucerna::gl {
 
 ReadBackRing::ReadBackRing(const std::string& name, std::size_t bytes) : bytes_(bytes) {
@@ -21,10 +23,8 @@ void ReadBackRing::copy(const Buffer& source) {
 std::vector<GLuint> ReadBackRing::fetch(bool wait) {
   GLsync& fence = fences_[oldest_];
   if (!fence) return {};
-  constexpr GLuint64 kSecond = 1000000000;
-  GLenum status = glClientWaitSync(fence, wait ? GL_SYNC_FLUSH_COMMANDS_BIT : 0, wait ? kSecond : 0);
-  while (wait && status == GL_TIMEOUT_EXPIRED) status = glClientWaitSync(fence, 0, kSecond);
-  if (status == GL_TIMEOUT_EXPIRED) return {};
+  if (wait) waitFor(fence);
+  else if (glClientWaitSync(fence, 0, 0) == GL_TIMEOUT_EXPIRED) return {};
   glDeleteSync(fence);
   fence = nullptr;
   const std::vector<GLuint> words = buffers_[oldest_].read<GLuint>();

@@ -16,12 +16,23 @@
 #include <cstring>
 #include <iterator>
 
-namespace lucerna::detail {
+namespace lucerna {
+
+static GlProcWrapper g_wrapper = nullptr;
+
+void wrapGlProcs(GlProcWrapper wrapper) { g_wrapper = wrapper; }
+
+namespace detail {
 
 namespace {
 
 GlProcLoader g_loader = nullptr;
 bool g_inWindow = false;
+
+GlProc load(const char* name) {
+  GlProc driver = g_loader(name);
+  return g_wrapper && driver ? g_wrapper(name, driver) : driver;
+}
 
 enum class Slot {
   BlendFunc,
@@ -161,14 +172,14 @@ Return entry(Args... args) {
 void setGlLoader(GlProcLoader loader, bool inWindow) {
   g_loader = loader;
   g_inWindow = inWindow;
-  for (std::size_t i = 0; i < std::size(kNames); ++i) g_entries[i] = loader ? loader(kNames[i]) : nullptr;
+  for (std::size_t i = 0; i < std::size(kNames); ++i) g_entries[i] = loader ? load(kNames[i]) : nullptr;
 }
 
 // In a window, the window system answers glX names; elsewhere there is no GLX and GLEW must not find one.
 extern "C" __attribute__((visibility("default"))) GlProc glXGetProcAddressARB(const GLubyte* name) {
   const char* text = reinterpret_cast<const char*>(name);
   if (!g_loader || (!g_inWindow && std::strncmp(text, "glX", 3) == 0)) return nullptr;
-  return g_loader(text);
+  return load(text);
 }
 
 extern "C" {
@@ -292,4 +303,6 @@ void GLAPIENTRY glTexSubImage2D(GLenum a0, GLint a1, GLint a2, GLint a3, GLsizei
 
 }  // extern "C"
 
-}  // namespace lucerna::detail
+}  // namespace detail
+
+}  // namespace lucerna

@@ -1,11 +1,11 @@
 // The three hosts' factories and their shared loader. Private to engine/host.
 #pragma once
 
+#include "host/gl_procs.hpp"
 #include "host/host.hpp"
 
 namespace lucerna::detail {
 
-using GlProc = void (*)();
 using GlProcLoader = GlProc (*)(const char* name);
 
 /// Sets the current host's loader, to which the GL 1.x entry points and glXGetProcAddressARB forward. `inWindow`:

@@ -36,7 +36,7 @@ LpvCascadeJoin::LpvCascadeJoin(gl::ProgramLibrary& programs, const gl::Capabilit
 void LpvCascadeJoin::finish() {
   if (!finish_) return;
   {
-    const gl::ComputePass pass("lpv finish", gl::Barrier::pixelBuffer);
+    const gl::ComputePass pass("lpv finish", gl::Barrier::storage | gl::Barrier::pixelBuffer);
     finish_->use();
     texels_.bindStorage(kResultBuffer);
     pass.dispatch(result_[0].size(), kLpvGroup);
@@ -50,14 +50,15 @@ void LpvCascadeJoin::join() {
   for (int k = cascades_ - 1; k >= 0; --k) {
     const bool coarsest = k + 1 == cascades_;
     if (!coarsest) {
-      const gl::ComputePass pass("lpv balance", gl::Barrier::textureFetch);
+      const gl::ComputePass pass("lpv balance", gl::Barrier::storage | gl::Barrier::textureFetch);
       balance_->use();
       balance_->set("cascade", k);
       balanced_.bind(6);
       balances_.buffer().bindStorage(kBalancesBuffer);
       pass.dispatch(glm::ivec3((cells_ + 1) / 2), kLpvGroup);
     }
-    const gl::ComputePass pass("lpv join", gl::Barrier::textureFetch | gl::Barrier::pixelBuffer);
+    const gl::ComputePass pass("lpv join",
+                               gl::Barrier::storage | gl::Barrier::textureFetch | gl::Barrier::pixelBuffer);
     const gl::Program& program = coarsest ? *joinCoarsest_ : *join_;
     program.use();
     program.set("cascade", k);

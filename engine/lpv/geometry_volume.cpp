@@ -162,7 +162,8 @@ void LpvGeometryVolume::draw(const ReflectiveShadowMap::Outputs& map, const LpvI
 
 void LpvGeometryVolume::mergeView() {
   const gl::ComputePass pass("lpv merge views",
-                             gl::Barrier::textureFetch | gl::Barrier::image | gl::Barrier::framebuffer);
+                             gl::Barrier::textureFetch | gl::Barrier::image | gl::Barrier::framebuffer,
+                             gl::Barrier::image);
   mergeViews_->use();
   viewPotential_.bind(0);
   potential_->bindImage(0, gl::Access::readWrite);

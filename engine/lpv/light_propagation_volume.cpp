@@ -143,7 +143,7 @@ void LightPropagationVolume::bindSums() const {
 
 // Adds the light reflected by the surfels to the source of the next bounce.
 void LightPropagationVolume::reflect(bool first) {
-  const gl::ComputePass pass("lpv reflect", gl::Barrier::textureFetch | gl::Barrier::image);
+  const gl::ComputePass pass("lpv reflect", gl::Barrier::textureFetch | gl::Barrier::image, gl::Barrier::image);
   reflect_->use();
   reflect_->set("first", first ? 1 : 0);
   reflect_->set("sourceShare", settings_.deviations.fewerSteps ? 0.0f : 1.0f);

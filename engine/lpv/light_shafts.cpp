@@ -58,7 +58,7 @@ LightShafts::LightShafts(gl::ProgramLibrary& programs, const Haze& haze, const S
 void LightShafts::bind() const { constants_.bindUniform(BLOCK_HAZE); }
 
 void LightShafts::record(const gl::Texture& radiance, const gl::Texture& depth, const glm::dmat4& clipFromWorld) {
-  const gl::ComputePass pass("light shafts", gl::Barrier::textureFetch | gl::Barrier::framebuffer);
+  const gl::ComputePass pass("light shafts", gl::Barrier::textureFetch | gl::Barrier::framebuffer, gl::Barrier::image);
   program_->use();
   program_->set("worldFromClip", glm::mat4(glm::inverse(clipFromWorld)));
   program_->set("steps", steps_);

@@ -294,7 +294,9 @@ void LpvReceivers::gather(const Inputs& inputs) {
 void LpvReceivers::store(float mostChange) {
   const std::array<const gl::Texture*, 1> textures{&irradiance_};
   gl::clearToZero(textures, clearTexture_);
-  const gl::ComputePass pass("lpv store receivers", gl::Barrier::textureFetch | gl::Barrier::textureUpdate);
+  const gl::ComputePass pass("lpv store receivers",
+                             gl::Barrier::storage | gl::Barrier::textureFetch | gl::Barrier::textureUpdate,
+                             gl::Barrier::image);
   store_->use();
   store_->set("enoughPaths", static_cast<unsigned>(std::min(settings_.samples, settings_.leastRays)));
   store_->set("mostChange", mostChange);

@@ -189,8 +189,10 @@ void RsmGather::gatherFull(const Inputs& inputs) {
     work_.upload(0, sizeof start, &start);
   }
   for (const Map& map : inputs.maps) {
-    const gl::ComputePass pass("gather full",
-                               gl::Barrier::textureFetch | gl::Barrier::bufferUpdate | gl::Barrier::image);
+    const gl::ComputePass pass(
+        "gather full",
+        gl::Barrier::storage | gl::Barrier::textureFetch | gl::Barrier::bufferUpdate | gl::Barrier::image,
+        gl::Barrier::image);
     const gl::Program& program = *full_[static_cast<std::size_t>(map.rsm.light)];
     bindMap(program, settings_, map, &map != &inputs.maps.front());
     bindVisible(program, inputs);

@@ -28,6 +28,7 @@ layout(binding = 0, rgba16f) coherent uniform image3D countRed;
 layout(binding = 1, rgba16f) coherent uniform image3D countGreen;
 layout(binding = 2, rgba16f) coherent uniform image3D countBlue;
 #else
+// unordered Counts: integer atomics commute
 layout(std430, binding = 0) buffer Counts { WORD_TYPE words[]; };
 #endif
 uniform float fluxScale;   // 1; without units, 1 / texel area of the light's map

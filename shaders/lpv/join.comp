@@ -15,6 +15,7 @@
 layout(local_size_x = GROUP_X, local_size_y = GROUP_Y, local_size_z = 1) in;
 layout(binding = 6) uniform samplerBuffer coarserReceived;  // R of the next coarser cascade
 layout(binding = 7) uniform samplerBuffer balances;         // of this cascade, one per 2x2x2 cells
+// aliased Received: reads the next coarser cascade and writes this one
 layout(std430, binding = 0) writeonly buffer Received { vec4 received[]; };  // R of this cascade
 // band 0 of b M, summed over the channels, for lpv/balance.comp
 layout(std430, binding = 2) writeonly buffer Balanced { float balanced[]; };

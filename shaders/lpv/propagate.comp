@@ -14,6 +14,7 @@ layout(binding = 1) uniform samplerBuffer faces;  // lpv/geometry_faces.comp
 #endif
 layout(binding = 2) uniform samplerBuffer sumBefore;
 layout(std430, binding = 1) writeonly buffer Next { vec4 next[]; };
+// aliased Sums: an invocation reads its own cell before it writes it, and no other one
 layout(std430, binding = 2) writeonly buffer Sums { vec4 sums[]; };
 
 #if BLOCKED

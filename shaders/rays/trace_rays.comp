@@ -8,6 +8,7 @@ layout(local_size_x = 64) in;
 #include "rays/bvh.glsl"
 
 layout(std430, binding = 2) readonly restrict buffer Rays { Ray rays[]; };
+// unordered Hits: each dispatch writes those of its own rays
 layout(std430, binding = 3) writeonly restrict buffer Hits { Hit hits[]; };
 layout(std430, binding = 4) readonly restrict buffer Skipped { uint skipTriangles[]; };
 

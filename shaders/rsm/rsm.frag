@@ -8,7 +8,9 @@
 // area: d^2 dOmega / cos.
 // Normal maps are not read here: a texel's area follows from the mesh's own normal, and flux does not depend on it. The
 // cosine in an area is bounded below by 1/20, since the few texels on a surface seen edge-on say little about its area.
+#if !PERSPECTIVE
 #include "lib/frame.glsl"
+#endif
 #include "lib/material.glsl"
 #include "lib/spot.glsl"
 #if HAZE

@@ -1,6 +1,8 @@
 // Transforms mesh vertices for the light. Flag LAYERS: number of target views that the geometry shader projects to; 1:
 // there is no geometry shader.
+#if !PERSPECTIVE
 #include "lib/frame.glsl"
+#endif
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec2 texCoord;
 layout(location = 2) in vec3 normal;

@@ -1,6 +1,8 @@
-// A GL context for tests: by testHost(), made once an executable. Any OpenGL error fails the test in which it happens.
+// A GL context for tests: by testHost(), made once an executable. Any OpenGL error, and any finding of the
+// barrier ledger, fails the test in which it happens.
 #pragma once
 
+#include "gl/barrier_ledger.hpp"
 #include "gl/context.hpp"
 #include "gl/program.hpp"
 #include "host/host.hpp"
@@ -16,6 +18,7 @@ class GlTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     if (host()) return;
+    gl::checkBarriers();
     host() = Host::create(testHost(), {.windowVisible = false});
     context_() = std::make_unique<gl::Context>(gl::DebugOutput::synchronous);
     ::testing::UnitTest::GetInstance()->listeners().Append(new EndOfProgram);
@@ -34,6 +37,7 @@ class GlTest : public ::testing::Test {
   /// already.
   struct EndOfProgram : ::testing::EmptyTestEventListener {
     void OnTestProgramEnd(const ::testing::UnitTest&) override {
+      gl::writeBarrierUses();
       context_().reset();
       host().reset();
     }

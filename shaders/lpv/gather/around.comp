@@ -41,6 +41,7 @@ layout(binding = 13) uniform samplerBuffer bouncePlaces;  // of points; w: bits 
 const float kApart = 0.25;  // cells along the normal, at most, from a surface to its point
 #if LINKS
 layout(std430, binding = 6) writeonly restrict buffer LpvLinks { uint links[]; };
+// aliased LpvBouncePlaces: with `probes` an invocation changes its own place and reads no other; without, none writes
 layout(std430, binding = 7) restrict buffer LpvBouncePlaces { vec4 places[]; };
 #else
 layout(binding = 9) uniform samplerBuffer bouncedLight;

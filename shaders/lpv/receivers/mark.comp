@@ -14,6 +14,7 @@ layout(binding = 7) uniform usamplerBuffer lpvSlots;  // 0: empty, else the rece
 #if CLAIM
 layout(binding = 1) uniform usamplerBuffer lpvKeys;
 layout(std430, binding = 0) writeonly restrict buffer LpvReceivers { LpvReceiver receivers[]; };
+// aliased LpvSlots: only the winner of an empty slot changes it; all others skip the slot with either value
 layout(std430, binding = 1) writeonly restrict buffer LpvSlots { uint slots[]; };
 #else
 layout(std430, binding = 0) writeonly restrict buffer LpvSeen { uint seen[]; };
