@@ -36,6 +36,4 @@ void readFloats(const Framebuffer& from, const glm::ivec2& corner, const glm::iv
 
 void finish() { glFinish(); }
 
-void flush() { glFlush(); }
-
 }  // namespace lucerna::gl

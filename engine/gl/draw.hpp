@@ -34,7 +34,5 @@ void readFloats(const Framebuffer& from, const glm::ivec2& corner, const glm::iv
 
 /// Waits until the GPU has finished all submitted work; for measurements.
 void finish();
-/// Ends a submission: the driver is given what was recorded so far.
-void flush();
 
 }  // namespace lucerna::gl
