@@ -173,7 +173,8 @@ uint leafOf(uint node, vec3 position, vec3 normal, float xi) {
     xi *= sum;
     int pick = 0;
     for (; pick < 3 && !(xi < given[pick]); ++pick) xi -= given[pick];
-    for (; pick > 0 && !(given[pick] > 0.0); --pick) {}  // by rounding beyond the last of them; ends: from 3 at most
+    // By rounding beyond the last of them.
+    for (int i = 3; i > 0 && !(given[pick] > 0.0); --i) pick = max(pick - 1, 0);
     xi = clamp(xi / given[pick], 0.0, 0.9999999);
     node = child + uint(pick);
   }
