@@ -55,6 +55,7 @@ int ask(const RenderOptions& options) {
     answer = renderer.ask(context, programs, scene, camera, pixel);
     renderer.drain();
   }
+  answer.checkSum();
   answer.condense(kAskedShares);
   const nlohmann::ordered_json json = toJson(answer);
   fmt::print("{}\n", json.dump(2));

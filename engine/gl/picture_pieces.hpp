@@ -1,10 +1,9 @@
 // Cuts work on a picture's pixels that nobody measures into submissions, within the bounds of gl/pieces.hpp: all of it
-// at once where that is safe, else pieces of unmeasured work. They do not wait for each other; each is handed over to
-// the driver by itself, since it is single submissions that must not take long.
+// at once where that is safe, else pieces of unmeasured work. They do not wait for each other, but submissions end
+// where they would take too long.
 #pragma once
 
 #include "gl/pieces.hpp"
-#include "gl/wait.hpp"
 
 #include <glm/glm.hpp>
 
@@ -25,7 +24,7 @@ class PicturePieces {
     for (int y = 0; y < picture.y; y += most.y)
       for (int x = 0; x < picture.x; x += most.x) {
         const glm::ivec2 corner(x, y), size = glm::min(most, picture - corner);
-        if (x + y > 0) flush();
+        Submission::add(turnsOfPixel * size.x * size.y, kMostOverUnmeasured * unmeasured_);
         draw(corner, size);
         largestTurns_ = std::max(largestTurns_, turnsOfPixel * size.x * size.y);
       }

@@ -15,7 +15,22 @@ std::uint32_t unitsOf(double turns, double turnsOfUnit, std::uint32_t most) {
   return static_cast<std::uint32_t>(std::clamp(std::floor(turns / turnsOfUnit), 1.0, static_cast<double>(most)));
 }
 
+thread_local double turnsSinceFlush = 0.0, largestSubmission = 0.0;
+
 }  // namespace
+
+void Submission::add(double turns, double most) {
+  if (turnsSinceFlush > 0.0 && turnsSinceFlush + turns > most) {
+    glFlush();
+    turnsSinceFlush = 0.0;
+  }
+  turnsSinceFlush += turns;
+  largestSubmission = std::max(largestSubmission, turnsSinceFlush);
+}
+
+double Submission::largest() { return largestSubmission; }
+
+void Submission::forget() { turnsSinceFlush = largestSubmission = 0.0; }
 
 PieceSize::PieceSize(double seconds, double turnsOfUnit, std::uint32_t most, double unmeasured)
     : seconds_(seconds), turnsOfUnit_(turnsOfUnit), mostTurns_(kMostOverUnmeasured * unmeasured), most_(most) {

@@ -19,6 +19,17 @@ constexpr double kUnmeasuredTurns = 0x1p26;
 constexpr double kMostOverUnmeasured = 4.0;
 constexpr double kTurnsOfRay = 64.0;  ///< approximate, for a ray through a hierarchy
 
+/// What lies between two flushes is one submission to a driver, whose watchdog times all of it. Work that is not
+/// measured is announced here, and what came before is handed over where both were too much. Of this thread, as
+/// contexts are.
+class Submission {
+ public:
+  /// turns: an upper estimate of the work that follows; most: of a submission.
+  static void add(double turns, double most = kMostOverUnmeasured * kUnmeasuredTurns);
+  static double largest();  ///< turns, since the last forget()
+  static void forget();
+};
+
 /// Units of the next piece, at least one: a unit cannot be cut.
 class PieceSize {
  public:

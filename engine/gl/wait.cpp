@@ -49,6 +49,4 @@ void waitBeforeReading() {
   if (g_limit > 0.0) finish();
 }
 
-void flush() { glFlush(); }
-
 }  // namespace lucerna::gl

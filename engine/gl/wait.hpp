@@ -20,8 +20,4 @@ void waitBeforeReading();
 void setWaitLimit(double seconds);
 constexpr double kGpuSeconds = 20.0;
 
-/// Hands the submitted commands to the driver, so that they form a batch of their own: a driver's watchdog times
-/// batches.
-void flush();
-
 }  // namespace lucerna::gl

@@ -1,8 +1,8 @@
 #include "lpv/light_gather.hpp"
 
 #include "base/error.hpp"
-#include "gl/draw.hpp"
 #include "gl/pass.hpp"
+#include "gl/pieces.hpp"
 #include "lpv/bounce_points.hpp"
 #include "lpv/emission_points.hpp"
 #include "lpv/grid.hpp"
@@ -25,9 +25,9 @@ constexpr GLuint kReceiversBuffer = 0, kListBuffer = 1, kLinksBuffer = 6, kBounc
 constexpr GLuint kVoxelsUnit = 6, kTreeUnit = 7, kSlotsUnit = 8, kLightUnit = 9;
 constexpr GLuint kPlacesUnit = 13, kMapUnits = 10;  // with rays: the texture atlas has the usual ones
 constexpr std::size_t kLinkBytes = 12;  // of a ray: a point's number and the albedo there
-constexpr std::size_t kMostGroups = 1u << 14;  // per submission: gl/pieces.hpp
 constexpr int kMostBounces = 64;
 constexpr int kRaysOfLane = 2;  // around a receiver
+constexpr int kDeepest = 13;  // of a light tree: maps have at most 8192 texels a side
 constexpr int kEmissionSize = 64;  // texels per side of the emissive surfaces' map
 constexpr double kLeft = 1.0 / 512.0;  // share of the light that all bounces may leave out
 
@@ -54,25 +54,33 @@ int bouncesOfAll(double albedo) {
 
 }  // namespace
 
-/// The receivers that a dispatch works on: as many groups as a buffer says, or as `count` does.
+/// The receivers that a dispatch works on: `count`, or at most as many, with the groups of each part in a buffer.
 struct LightGather::Targets {
   const gl::Buffer* groups = nullptr;
   std::size_t offset = 0, count = 0;
 
-  void dispatch(const gl::ComputePass& pass, const gl::Program& program) const {
-    program.set("firstListed", 0u);
-    if (groups) {
-      pass.dispatchIndirect(*groups, offset);
-      return;
-    }
-    for (std::size_t first = 0; first < count; first += kMostGroups) {
-      if (first > 0) gl::flush();
-      program.set("firstListed", static_cast<unsigned>(first));
-      const auto size = static_cast<int>(std::min(count - first, kMostGroups));
-      pass.dispatch(glm::ivec3(size, 1, 1), glm::ivec3(1));
+  /// turns: of a lane.
+  void dispatch(const gl::ComputePass& pass, const gl::Program& program, double turns) const {
+    for (std::size_t first = 0; first < count; first += LPV_PART_GROUPS) {
+      const std::size_t size = std::min<std::size_t>(count - first, LPV_PART_GROUPS);
+      gl::Submission::add(turns * LPV_LANES * static_cast<double>(size));
+      program.set("firstGroup", static_cast<unsigned>(first));
+      if (groups) pass.dispatchIndirect(*groups, offset + first / LPV_PART_GROUPS * 3 * sizeof(GLuint));
+      else pass.dispatch(glm::ivec3(static_cast<int>(size), 1, 1), glm::ivec3(1));
     }
   }
 };
+
+double LightGather::turnsOfLane(int depth, int top, int layers) {
+  const double coarsest = std::ceil(layers * std::exp2(2 * top) / LPV_LANES);
+  // Opening; then three siblings on each level, and the coarsest nodes. Texels near by. The way to a leaf, and a ray.
+  return LPV_MOST_OPENING + 3.0 * (depth - top) + coarsest + LPV_MOST_NEAR + 4.0 * depth + gl::kTurnsOfRay;
+}
+
+double LightGather::mostTurns() const {
+  const double turns = std::max(turnsOfLane(kDeepest, LightTree::kTop, 6), kRaysOfLane * gl::kTurnsOfRay);
+  return turns * LPV_LANES * LPV_PART_GROUPS;
+}
 
 LightGather::Parts LightGather::partsOf(const SceneNeeds& needs, const LpvSettings& settings, ReceivedLight light) {
   const bool own = light != ReceivedLight::indirect, reflected = light != ReceivedLight::direct;
@@ -221,7 +229,7 @@ void LightGather::gatherTree(const gl::Program& program, const ReflectiveShadowM
     voxels_.bind(kVoxelsUnit);
   }
   tree.bind(program, kTreeUnit);
-  targets.dispatch(pass, program);
+  targets.dispatch(pass, program, turnsOfLane(tree.depth(), tree.top(), tree.layers()));
 }
 
 void LightGather::gatherAround(const gl::Program& program, const Targets& targets, bool last) const {
@@ -240,7 +248,7 @@ void LightGather::gatherAround(const gl::Program& program, const Targets& target
     places_.bind(kPlacesUnit);
     places_.buffer().bindStorage(kBouncedBuffer);
   }
-  targets.dispatch(pass, program);
+  targets.dispatch(pass, program, kRaysOfLane * gl::kTurnsOfRay);
 }
 
 void LightGather::update(const std::vector<ReflectiveShadowMap::Outputs>& maps, bool mapsAreNew) {
@@ -277,6 +285,7 @@ void LightGather::update(const std::vector<ReflectiveShadowMap::Outputs>& maps, 
 }
 
 void LightGather::bounce(int to, bool first) {
+  gl::Submission::add(static_cast<double>(points_) * LPV_LANES);
   const gl::ComputePass pass("lpv bounce", gl::Barrier::storage | gl::Barrier::textureFetch);
   bounce_->use();
   bounce_->set("first", first ? 1 : 0);
@@ -289,8 +298,8 @@ void LightGather::bounce(int to, bool first) {
 }
 
 void LightGather::gather(const std::vector<ReflectiveShadowMap::Outputs>& maps, const gl::Buffer& groups,
-                         std::size_t offset) {
-  const Targets targets{&groups, offset, 0};
+                         std::size_t offset, std::size_t most) {
+  const Targets targets{&groups, offset, most};
   const bool emission = emission_ && ownEmission_, around = around_ != nullptr;
   if (parts_.maps)
     for (std::size_t i = 0; i < maps.size(); ++i)
@@ -299,8 +308,6 @@ void LightGather::gather(const std::vector<ReflectiveShadowMap::Outputs>& maps, 
   if (emission) gatherTree(*emission_, emissionMap(), *emissionTree_, targets, false);
   if (around) gatherAround(*around_, targets, true);
 }
-
-std::size_t LightGather::pointsAtOnce() const { return std::min(points_, kMostGroups); }
 
 std::size_t LightGather::gpuBytes() const {
   std::size_t bytes = voxels_.bytes() + emissionPosition_.bytes() + emissionNormal_.bytes() + emissionFlux_.bytes() +

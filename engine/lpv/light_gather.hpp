@@ -44,12 +44,14 @@ class LightGather {
   /// Trees, and the light of earlier bounces, where the maps are new. Uniform blocks of the receivers must be bound;
   /// storage blocks 0 and 1 are left bound to others.
   void update(const std::vector<ReflectiveShadowMap::Outputs>& maps, bool mapsAreNew);
-  /// For the receivers in storage block 0 whose numbers are in block 1, as many as `groups` says at `offset`: adds all
-  /// their light, then they are final.
-  void gather(const std::vector<ReflectiveShadowMap::Outputs>& maps, const gl::Buffer& groups, std::size_t offset);
+  /// For the receivers in storage block 0 whose numbers are in block 1, at most `most`: adds all their light, then they
+  /// are final. `groups`: at `offset`, the indirect dispatch of each part of LPV_PART_GROUPS of them.
+  void gather(const std::vector<ReflectiveShadowMap::Outputs>& maps, const gl::Buffer& groups, std::size_t offset,
+              std::size_t most);
   void forget() { stale_ = true; }
-  /// Points that one submission works on, at most.
-  std::size_t pointsAtOnce() const;
+  /// Of a lane that gathers from a light tree, at most: nodes and texels that it visits, and its ray.
+  static double turnsOfLane(int depth, int top, int layers);
+  double mostTurns() const;  ///< of a submission, at most
   std::size_t gpuBytes() const;
 
  private:

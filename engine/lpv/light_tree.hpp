@@ -21,6 +21,8 @@ class LightTree {
   /// For a program in use that includes tree.glsl; binds the nodes as texels to `unit`.
   void bind(const gl::Program& program, GLuint unit) const;
   int depth() const { return depth_; }
+  int top() const { return top_; }  ///< depth of the coarsest nodes
+  int layers() const { return layers_; }
   std::size_t gpuBytes() const { return nodes_.bytes(); }
   /// 12 words per node, in the order of tree.glsl; of depths above the coarsest nothing is written. For tests.
   std::vector<GLuint> readNodes() const { return nodes_.buffer().read<GLuint>(); }

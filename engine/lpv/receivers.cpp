@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "forward/light_views.hpp"
 #include "gl/pass.hpp"
+#include "gl/pieces.hpp"
 #include "lpv/grid.hpp"
 #include "rays/light_table.hpp"
 #include "shared/bindings.h"
@@ -21,9 +22,7 @@ constexpr GLuint kSlotsUnit = 7, kKeysUnit = 1, kSeenUnit = 6;  // where rays ar
 constexpr std::uint32_t kSegmentsOfAll = 64;  // of a path that meets no receivers; it misses a share of albedo^64
 constexpr float kWiderBand = 2.0f;  // than lpv.blend: cascades differ more where they are not joined
 constexpr std::uint32_t kSoftwareTurns = 2000, kMostTurns = 1u << 16;  // like the path tracer's, less one segment
-// Of a lane, approximately (gl/pieces.hpp): of a path, or of gather four rays, or one ray and nodes of the tree.
-constexpr std::size_t kTurnsOfPath = 256;
-constexpr std::size_t kMostPaths = (std::size_t{1} << 28) / kTurnsOfPath;  // per submission
+constexpr std::size_t kMostPaths = std::size_t{1} << 20;  // per submission
 constexpr std::size_t kKeyPixels = std::size_t{1} << 23;  // number that a key distinguishes
 
 float largest(const glm::vec3& v) { return std::max({v.x, v.y, v.z}); }
@@ -92,7 +91,7 @@ LpvReceivers::LpvReceivers(gl::ProgramLibrary& programs, const gl::Capabilities&
   for (gl::Buffer& buffer : receivers_)
     buffer = gl::Buffer("lpv receivers", capacity_ * sizeof(shared::LpvReceiver), nullptr, gl::Usage::dynamicCopy);
   for (gl::Buffer& buffer : work_)
-    buffer = gl::Buffer("lpv receivers' work", sizeof kNoWork, nullptr, gl::Usage::dynamicCopy);
+    buffer = gl::Buffer("lpv receivers' work", kWorkWords * sizeof(GLuint), nullptr, gl::Usage::dynamicCopy);
   lit_ = gl::Buffer("lpv lit receivers",
                     std::min(capacity_, kMostPaths / static_cast<std::size_t>(lanes)) * sizeof(GLuint), nullptr,
                     gl::Usage::dynamicCopy);
@@ -109,7 +108,7 @@ LpvReceivers::LpvReceivers(gl::ProgramLibrary& programs, const gl::Capabilities&
   aroundPoints_ = gl::Buffer("lpv points around the camera",
                              static_cast<std::size_t>(std::max(settings.around, 1)) * sizeof(shared::LpvAroundPoint),
                              nullptr, gl::Usage::dynamicCopy);
-  ring_ = std::make_unique<gl::ReadBackRing>("lpv receiver counts", sizeof kNoWork);
+  ring_ = std::make_unique<gl::ReadBackRing>("lpv receiver counts", kWorkWords * sizeof(GLuint));
 
   // Select the light that paths carry, and the programs of every transport.
   scene_.fill(path_);
@@ -149,7 +148,7 @@ gl::ShaderFlags LpvReceivers::rayFlags(int lanes) const {
 void LpvReceivers::forget() {
   slotTable_.clear();
   seen_.clear();
-  for (gl::Buffer& buffer : work_) buffer.upload(0, sizeof kNoWork, kNoWork.data());
+  for (gl::Buffer& buffer : work_) buffer.upload(0, kWorkWords * sizeof(GLuint), noWork().data());
   const std::array<const gl::Texture*, 1> textures{&irradiance_};
   gl::clearToZero(textures, clearTexture_);
   cascades_.clear();
@@ -201,7 +200,7 @@ void LpvReceivers::bindReceivers() const {
 void LpvReceivers::keep() {
   std::swap(receivers_[0], receivers_[1]);
   std::swap(work_[0], work_[1]);
-  work_[0].upload(0, sizeof kNoWork, kNoWork.data());
+  work_[0].upload(0, kWorkWords * sizeof(GLuint), noWork().data());
   slotTable_.clear();
   const gl::ComputePass pass("lpv keep receivers",
                              gl::Barrier::storage | gl::Barrier::textureFetch | gl::Barrier::command);
@@ -257,8 +256,9 @@ void LpvReceivers::mark(const Inputs& inputs) {
 
 // Lists visible receivers with fewer paths than `target`.
 void LpvReceivers::list(int target, bool countsFading) {
-  const std::array<GLuint, 5> none{0, 1, 1, 0, frame_};
-  work_[0].upload(kLitGroups, sizeof none, none.data());
+  std::array<GLuint, kWorkWords> none = noWork();
+  none[kFrame] = frame_;
+  work_[0].upload(kWaiting * sizeof(GLuint), (kWorkWords - kWaiting) * sizeof(GLuint), &none[kWaiting]);
   bindReceivers();
   lpvConstantsBefore_.bindUniform(BLOCK_LPV);  // new receivers look up the light shown in their place before
   irradiance_.bind(UNIT_RECEIVED);
@@ -275,12 +275,26 @@ void LpvReceivers::list(int target, bool countsFading) {
   lpvConstants_.bindUniform(BLOCK_LPV);
 }
 
+std::array<GLuint, LpvReceivers::kWorkWords> LpvReceivers::noWork() {
+  std::array<GLuint, kWorkWords> words{0, 1, 1};
+  for (std::size_t part = kLitGroups; part < kWorkWords; part += 3) words[part + 1] = words[part + 2] = 1;
+  return words;
+}
+
+void LpvReceivers::dispatchListed(const gl::ComputePass& pass, const gl::Program& program, const gl::Buffer& work) {
+  for (unsigned part = 0; part < LPV_PARTS; ++part) {
+    program.set("firstGroup", part * LPV_PART_GROUPS);
+    pass.dispatchIndirect(work, (kLitGroups + 3 * part) * sizeof(GLuint));
+  }
+}
+
 void LpvReceivers::light(int target) {
   list(target);
   const gl::ComputePass pass("lpv paths", gl::Barrier::storage);
   paths_->use();
   irradiance_.bind(UNIT_RECEIVED);
-  pass.dispatchIndirect(work_[0], kLitGroups);
+  gl::Submission::add(mostTurns());
+  dispatchListed(pass, *paths_, work_[0]);
 }
 
 // New receivers gather all their light; then they are final while the maps stay.
@@ -288,7 +302,7 @@ void LpvReceivers::gather(const Inputs& inputs) {
   bindReceivers();
   gather_->update(inputs.maps, inputs.mapsAreNew);
   list(1);
-  gather_->gather(inputs.maps, work_[0], kLitGroups);
+  gather_->gather(inputs.maps, work_[0], kLitGroups * sizeof(GLuint), lit_.bytes() / sizeof(GLuint));
 }
 
 void LpvReceivers::store(float mostChange) {
@@ -360,7 +374,6 @@ std::vector<AskedPart> LpvReceivers::ask(const glm::vec3& position, const glm::v
 }
 
 std::vector<LpvReceivers::Shown> LpvReceivers::shown() const {
-  constexpr std::size_t kWanted = 3;  // of shaders/lpv/receivers/work.glsl
   const std::size_t count = std::min<std::size_t>(work_[0].read<GLuint>()[kWanted], capacity_);
   std::vector<Shown> result;
   if (count == 0) return result;
@@ -374,10 +387,10 @@ std::vector<LpvReceivers::Shown> LpvReceivers::shown() const {
 
 void LpvReceivers::collect(bool wait) {
   for (std::vector<GLuint> words = ring_->fetch(wait); !words.empty(); words = ring_->fetch(wait)) {
-    counts_.receivers = std::min<std::uint64_t>(words[3], capacity_);
-    counts_.left = words[3] - counts_.receivers;
-    counts_.waiting = words[7];
-    counts_.frame = words[8];
+    counts_.receivers = std::min<std::uint64_t>(words[kWanted], capacity_);
+    counts_.left = words[kWanted] - counts_.receivers;
+    counts_.waiting = words[kWaiting];
+    counts_.frame = words[kFrame];
   }
 }
 
@@ -391,9 +404,8 @@ std::size_t LpvReceivers::mostFrames() const {
 }
 
 double LpvReceivers::mostTurns() const {
-  const int lanes = settings_.transport == LpvTransport::rays ? settings_.rays : LPV_LANES;
-  const std::size_t listed = std::max(lit_.bytes() / sizeof(GLuint), gather_ ? gather_->pointsAtOnce() : 0);
-  return static_cast<double>(listed) * lanes * static_cast<double>(kTurnsOfPath);
+  if (gather_) return gather_->mostTurns();
+  return static_cast<double>(lit_.bytes() / sizeof(GLuint)) * settings_.rays * kTurnsOfPath;
 }
 
 std::size_t LpvReceivers::gpuBytes() const {

@@ -16,6 +16,7 @@
 #include "base/image.hpp"
 #include "forward/visible_surfaces.hpp"
 #include "gl/context.hpp"
+#include "gl/pass.hpp"
 #include "gl/program.hpp"
 #include "forward/asked_pixel.hpp"
 #include "gl/read_back.hpp"
@@ -107,8 +108,10 @@ class LpvReceivers {
 
  private:
   static constexpr GLuint kReceiversBuffer = 0, kWorkBuffer = 5;  // GL_SHADER_STORAGE_BUFFER
-  static constexpr std::array<GLuint, 9> kNoWork{0, 1, 1, 0, 0, 1, 1, 0, 0};  ///< receivers/work.glsl
-  static constexpr std::size_t kLitGroups = 4 * sizeof(GLuint);  ///< in it
+  static constexpr double kTurnsOfPath = 256.0;  ///< of a lane, approximately (gl/pieces.hpp)
+  // Words of shaders/lpv/receivers/work.glsl.
+  static constexpr std::size_t kWanted = 3, kWaiting = 4, kFrame = 5, kLitGroups = 6, kWorkWords = 36;
+  static std::array<GLuint, kWorkWords> noWork();  ///< groups of all dispatches: 0 by 1 by 1
 
   void place(const Inputs& inputs);
   void keep();
@@ -120,6 +123,8 @@ class LpvReceivers {
   void store(float mostChange);
   void bindReceivers() const;
   gl::ShaderFlags rayFlags(int lanes) const;
+  /// Dispatches a program over the listed receivers, part after part.
+  static void dispatchListed(const gl::ComputePass& pass, const gl::Program& program, const gl::Buffer& work);
   Image atPixels(int rounds, const std::function<void(const gl::Buffer& work)>& light) const;
 
   LpvSettings settings_;

@@ -1,6 +1,6 @@
 // Floors of LpvReceivers: light at the surfaces that pixels show.
-#include "gl/draw.hpp"
 #include "gl/pass.hpp"
+#include "gl/pieces.hpp"
 #include "lpv/receivers.hpp"
 #include "shared/bindings.h"
 #include "shared/lpv_receivers.h"
@@ -24,7 +24,7 @@ Image LpvReceivers::atPixels(int rounds, const std::function<void(const gl::Buff
   const gl::Buffer receivers("lpv receivers of pixels", kAtOnce * sizeof(shared::LpvReceiver), nullptr,
                              gl::Usage::dynamicCopy),
       list("lpv list of pixels", kAtOnce * sizeof(GLuint), nullptr, gl::Usage::dynamicCopy);
-  gl::Buffer work("lpv work of pixels", sizeof kNoWork, nullptr, gl::Usage::dynamicCopy);
+  gl::Buffer work("lpv work of pixels", kWorkWords * sizeof(GLuint), nullptr, gl::Usage::dynamicCopy);
   const std::size_t blocks = (pixels + kAtOnce - 1) / kAtOnce;
   for (std::size_t i = 0; i < blocks * static_cast<std::size_t>(rounds); ++i) {
     const std::size_t first = i % blocks * kAtOnce, count = std::min(kAtOnce, pixels - first);
@@ -32,7 +32,7 @@ Image LpvReceivers::atPixels(int rounds, const std::function<void(const gl::Buff
     scene_.bind();
     receivers.bindStorage(kReceiversBuffer);
     list.bindStorage(kListBuffer);
-    work.upload(0, sizeof kNoWork, kNoWork.data());
+    work.upload(0, kWorkWords * sizeof(GLuint), noWork().data());
     work.bindStorage(kWorkBuffer);
     {
       const gl::ComputePass pass("lpv receivers of pixels", gl::Barrier::storage | gl::Barrier::command);
@@ -56,7 +56,8 @@ Image LpvReceivers::atPixels(int rounds, const std::function<void(const gl::Buff
 Image LpvReceivers::gatheredAtPixels(const std::vector<ReflectiveShadowMap::Outputs>& maps) const {
   CHECK(gather_, "lpv.transport is not gather");
   constexpr int kRounds = 4;  // of 64 rays each: cells average over several receivers, pixels do not
-  return atPixels(kRounds, [&](const gl::Buffer& work) { gather_->gather(maps, work, kLitGroups); });
+  return atPixels(kRounds,
+                  [&](const gl::Buffer& work) { gather_->gather(maps, work, kLitGroups * sizeof(GLuint), kAtOnce); });
 }
 
 Image LpvReceivers::readFromCells(const std::vector<Cascade>& cascades, int paths) const {
@@ -68,10 +69,10 @@ Image LpvReceivers::readFromCells(const std::vector<Cascade>& cascades, int path
   return atPixels(1, [&](const gl::Buffer& work) {
     cells.bindUniform(BLOCK_LPV);
     for (int done = 0; done < paths; done += LPV_LANES) {
+      gl::Submission::add(static_cast<double>(kAtOnce * LPV_LANES) * kTurnsOfPath);
       const gl::ComputePass pass("lpv paths from cells", gl::Barrier::storage | gl::Barrier::bufferUpdate);
       program.use();
-      pass.dispatchIndirect(work, kLitGroups);
-      gl::flush();
+      dispatchListed(pass, program, work);
     }
   });
 }

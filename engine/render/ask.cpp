@@ -127,6 +127,8 @@ AskedTerms Renderer::drawAsked(gl::ProgramLibrary& programs, const FrameView& vi
     state.polygonOffset = sides.polygonOffset;
     const gl::RasterPass pass("asked pixel", radianceTarget_, state);
     pass.restrictTo(fromBelow, {1, 1});
+    for (const gl::Program* program : {asked.opaque, asked.masked})
+      if (program) program->set("askedPixel", fromBelow);
     gpuScene_->draw(asked, view.drawn());
   }
   terms.read();
@@ -155,8 +157,11 @@ PixelAnswer Renderer::ask(const gl::Context& context, gl::ProgramLibrary& progra
   const glm::dvec3 position = glm::dvec3(terms[ASKED_POSITION]) + origin_;
   answer.surface = PixelAnswer::Surface{position, glm::dvec3(terms[ASKED_NORMAL]), glm::dvec3(terms[ASKED_ALBEDO])};
   add(answer, "emission", "the surface itself", glm::dvec3(terms[ASKED_EMISSION]), {position});
+  const glm::dvec3 ofSurface(terms[ASKED_RADIANCE]);
   if (radiosity_) answerOfPatches(context, programs, scene, terms, answer);
   else answerOfForward(programs, view, terms, fromBelow, answer);
+  if (shafts_) add(answer, "medium", "light shafts, less what the medium takes", answer.radiance - ofSurface);
+  if (rsm_ && rsm_->showsRefused()) answer.radiance = ofSurface;  // the picture may be painted red here
   return answer;
 }
 
@@ -229,8 +234,13 @@ void Renderer::answerOfPatches(const gl::Context& context, gl::ProgramLibrary& p
     if (scene.sun) names.emplace_back("sun");
     for (std::size_t i = 0; i < scene.spots.size(); ++i) names.push_back(fmt::format("spot {}", i + 1));
     for (std::size_t i = 0; i < scene.points.size(); ++i) names.push_back(fmt::format("point {}", i + 1));
-    for (std::size_t i = 0; i < names.size() && ASKED_LIGHTS + i < AskedTerms::kCount; ++i)
+    glm::dvec3 rest =
+        glm::dvec3(terms[ASKED_RADIANCE] - terms[ASKED_EMISSION]) - reflection * glm::dvec3(terms[ASKED_INDIRECT]);
+    for (std::size_t i = 0; i < names.size() && ASKED_LIGHTS + i < AskedTerms::kCount; ++i) {
       add(answer, "direct", names[i], glm::dvec3(terms[ASKED_LIGHTS + i]));
+      rest -= glm::dvec3(terms[ASKED_LIGHTS + i]);
+    }
+    if (ASKED_LIGHTS + names.size() > AskedTerms::kCount) add(answer, "direct", "more lamps", rest);
   }
   const RadiosityOrigins origins = originsOf(context, programs, scene, solution, settings_.radiosity.solution, patch,
                                              glm::dvec3(terms[ASKED_CORNERS]), settings_.radiosity.flat);

@@ -87,11 +87,11 @@ void LpvFrame::record(gl::TimeQuery& timer, const FrameView& view) {
 }
 
 double LpvFrame::largestTurns(const RenderSettings& settings, bool hasPoints) {
-  constexpr double kTurnsOfTexel = 2.0, kTurnsOfCell = 30.0;  // a cell: 6 neighbours, 5 faces each
+  constexpr double kTurnsOfTexel = 2.0;
   const double cells = settings.lpv.cascades.cells, side = settings.rsm.size;
   const double faces = hasPoints ? 6.0 / 4.0 : 1.0;  // six of half the side
   return std::max(kTurnsOfTexel * faces * side * side,
-                  kTurnsOfCell * cells * cells * cells * settings.lpv.cascades.cascades);
+                  kTurnsOfPropagation * cells * cells * cells * settings.lpv.cascades.cascades);
 }
 
 void LpvFrame::forget() {

@@ -1,5 +1,7 @@
 #include "render/pixel_answer.hpp"
 
+#include "base/error.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,6 +19,22 @@ glm::dvec3 PixelAnswer::sum() const {
   glm::dvec3 sum(0.0);
   for (const PixelShare& share : shares) sum += share.radiance;
   return sum;
+}
+
+void PixelAnswer::checkSum() const {
+  // Filters weigh the cells of a lookup with 8 bits; among them are brighter ones and negative ones.
+  constexpr double kHalfFloats = 1e-3, kFilters = 0.02;
+  double brightest = 0.0, largest = 0.0;
+  for (int c = 0; c < 3; ++c) {
+    brightest = std::max(brightest, std::abs(radiance[c]));
+    for (const PixelShare& share : shares) largest = std::max(largest, std::abs(share.radiance[c]));
+  }
+  const glm::dvec3 all = sum(), off = glm::abs(all - radiance);
+  const double most = technique == "direct" ? kHalfFloats * brightest : kFilters * std::max(brightest, largest);
+  if (!(std::max({off.x, off.y, off.z}) <= most))
+    throw Error(ErrorKind::fault,
+                fmt::format("internal error: pixel {}, {} is {} {} {}, but its parts add up to {} {} {}", pixel.x,
+                            pixel.y, radiance.x, radiance.y, radiance.z, all.x, all.y, all.z));
 }
 
 double PixelAnswer::shareOf(const glm::dvec3& part) const {

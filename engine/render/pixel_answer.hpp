@@ -39,6 +39,8 @@ struct PixelAnswer {
   glm::dvec3 standardError{0.0};  ///< for path tracing, of `radiance`
 
   glm::dvec3 sum() const;
+  /// Error(fault) where the shares do not add up to the pixel, but for half floats and the weights of filters.
+  void checkSum() const;
   /// A share's part of the pixel, by luminance; 0 for a black pixel.
   double shareOf(const glm::dvec3& radiance) const;
   /// Radiance by group, brightest first.

@@ -30,6 +30,7 @@ class RsmFrame {
   void collect(bool wait = false) { gather_.collect(wait); }
 
   /// Flags of shaders/forward/indirect.glsl, and its inputs.
+  bool showsRefused() const { return gather_.settings().showRefused; }
   gl::ShaderFlags shadingFlags() const { return {{"GATHERED", 1}, {"SHOW_REFUSED", gather_.settings().showRefused}}; }
   void bindForShading() const;
 

@@ -1,5 +1,11 @@
 // The block to which shading writes what lit the queried pixel. Only the visible surface may write: the depth test runs
-// first.
+// first. Only that pixel may: drivers may shade others for it, outside of the scissor, whose colours are dropped but
+// whose writes are not.
 #include "shared/asked.h"
 layout(early_fragment_tests) in;
 layout(std430, binding = ASKED_BINDING) writeonly buffer Asked { vec4 asked[]; };
+uniform ivec2 askedPixel;  // from the picture's lower left corner
+bool isVisible = true;     // false: cut out
+void record(int term, vec4 value) {
+  if (isVisible && ivec2(gl_FragCoord.xy) == askedPixel && term < asked.length()) asked[term] = value;
+}

@@ -19,14 +19,15 @@ const float kTouching = 1e-30;
 layout(binding = UNIT_SPOT_SHADOWS) uniform sampler2DArrayShadow spotShadows;
 
 // The visible fraction, from four bilinear depth comparisons that form a 3x3 tent filter. The receiver has been moved
-// along its normal, and the map is rendered with a depth offset by slope.
+// along its normal, and the map is rendered with a depth offset by slope. Without derivatives, since lanes outside of
+// the cone have left.
+float spotShadowTap(vec4 place) { return textureGrad(spotShadows, place, vec2(0.0), vec2(0.0)); }
 float spotShadowTent(float layer, vec3 uvz) {
   float d = 0.5 / float(textureSize(spotShadows, 0).x);
-  float sum = texture(spotShadows, vec4(uvz.xy + vec2(-d, -d), layer, uvz.z)) +
-              texture(spotShadows, vec4(uvz.xy + vec2(d, -d), layer, uvz.z)) +
-              texture(spotShadows, vec4(uvz.xy + vec2(-d, d), layer, uvz.z)) +
-              texture(spotShadows, vec4(uvz.xy + vec2(d, d), layer, uvz.z));
-  return 0.25 * sum;
+  return 0.25 * (spotShadowTap(vec4(uvz.xy + vec2(-d, -d), layer, uvz.z)) +
+                 spotShadowTap(vec4(uvz.xy + vec2(d, -d), layer, uvz.z)) +
+                 spotShadowTap(vec4(uvz.xy + vec2(-d, d), layer, uvz.z)) +
+                 spotShadowTap(vec4(uvz.xy + vec2(d, d), layer, uvz.z)));
 }
 
 // normal: for shading; meshNormal: the direction in which the shadow lookup is offset.
@@ -61,8 +62,7 @@ Arriving pointLight(int i, vec3 position, vec3 normal, vec3 meshNormal) {
   float distance2 = dot(away, away);
   Arriving result = Arriving(vec3(0.0), away * inversesqrt(max(distance2, kTouching)), 0.0);
   result.cosine = dot(normal, result.toLight);
-  if (result.cosine <= 0.0) return result;
-  // Depth is measured along the face's axis, that of the largest component.
+  // All lanes look up the map, lit or not: GLSL has no lookup in a cube's shadow map without derivatives. Depth is measured along the face's axis, that of the largest component.
   vec3 size = abs(away);
   float texel = lights.points[i].shadowTexel * max(size.x, max(size.y, size.z));
   vec3 fromLight = meshNormal * (kNormalOffset * texel) - away;
@@ -74,7 +74,7 @@ Arriving pointLight(int i, vec3 position, vec3 normal, vec3 meshNormal) {
   v *= 0.5 * texel;
   float visible = 0.25 * (pointShadowTap(i, fromLight + u + v) + pointShadowTap(i, fromLight + u - v) +
                           pointShadowTap(i, fromLight - u + v) + pointShadowTap(i, fromLight - u - v));
-  result.irradiance = lights.points[i].intensity * (result.cosine / distance2 * visible);
+  if (result.cosine > 0.0) result.irradiance = lights.points[i].intensity * (result.cosine / distance2 * visible);
   return result;
 }
 #endif

@@ -2,6 +2,7 @@
 // number, 0 for one map): a 3x3 tent filter of comparisons, each with the depth that the receiver's plane has at the
 // middle of that texel. Points in the air, without a normal (0), take the nearest texel alone.
 #include "shared/bindings.h"
+#include "lib/clamped_int.glsl"
 #include "lib/frame.glsl"
 
 #if SUN_CASCADES
@@ -45,7 +46,8 @@ float visibleInMap(mat4 clipFromWorld, vec3 position, vec3 normal, int cascade) 
   const float kElsewhere = 0.002, kSeen = 0.1;
   vec3 uvz = 0.5 * (clipFromWorld * vec4(position, 1.0)).xyz + 0.5;
   vec2 size = vec2(textureSize(shadowMap, 0).xy), place = uvz.xy * size, middle = floor(place);
-  if (normal == vec3(0.0)) return float(storedOrNothing(ivec2(middle), cascade) >= min(uvz.z, 1.0));
+  ivec2 texel = clampedInt(middle, ivec2(-2), textureSize(shadowMap, 0).xy + 1);
+  if (normal == vec3(0.0)) return float(storedOrNothing(texel, cascade) >= min(uvz.z, 1.0));
   ShadowPlane plane = shadowPlane(clipFromWorld, normal);
   vec2 off = place - middle - 0.5;
   vec2 weights[3] = vec2[3](0.25 - 0.5 * off, vec2(0.5), 0.25 + 0.5 * off);
@@ -54,7 +56,7 @@ float visibleInMap(mat4 clipFromWorld, vec3 position, vec3 normal, int cascade) 
     for (int x = 0; x < 3; ++x) {
       vec2 step = vec2(x, y) - 1.0;
       float depth = uvz.z + dot(plane.slope, (step - off) / size);
-      float stored = storedOrNothing(ivec2(middle + step), cascade), weight = weights[x].x * weights[y].y;
+      float stored = storedOrNothing(texel + ivec2(x, y) - 1, cascade), weight = weights[x].x * weights[y].y;
       if (stored >= min(depth + plane.away, 1.0)) elsewhere += weight;
       else if (stored >= depth) own += weight;
       else if (stored > depth - plane.away) joined += weight;

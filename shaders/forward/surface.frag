@@ -52,7 +52,7 @@ vec3 reflection(vec3 albedo, vec3 normal, vec3 toCamera, vec3 toLight) {
 void add(inout vec3 result, vec3 radiance, int term) {
   result += radiance;
 #if ASKED
-  asked[term] = vec4(radiance, 0.0);
+  record(term, vec4(radiance, 0.0));
 #endif
 }
 
@@ -67,7 +67,10 @@ void main() {
 #if SUN
   vec3 face = cross(normalize(dFdx(vPosition)), normalize(dFdy(vPosition)));  // the triangle's own normal
 #endif
-  if (materialCutOut(vTexCoord)) discard;
+  bool isCutOut = materialCutOut(vTexCoord);  // discarded last: lights take derivatives
+#if ASKED
+  isVisible = !isCutOut;
+#endif
   vec3 toCamera = normalize(frame.cameraPosition - vPosition);
   // Surfaces are two-sided. The geometric side of the face, not the interpolated normal, decides whether to flip the
   // normal towards the viewer.
@@ -111,13 +114,14 @@ void main() {
   add(result, emitted, ASKED_EMISSION);
 #endif
 #if ASKED
-  asked[ASKED_POSITION] = vec4(vPosition, 1.0);
-  asked[ASKED_NORMAL] = vec4(normal, 0.0);
-  asked[ASKED_MESH_NORMAL] = vec4(meshNormal, 0.0);
-  asked[ASKED_ALBEDO] = vec4(albedo, 0.0);
-  asked[ASKED_RADIANCE] = vec4(result, 0.0);
-  asked[ASKED_INDIRECT] = vec4(indirect, 0.0);
+  record(ASKED_POSITION, vec4(vPosition, 1.0));
+  record(ASKED_NORMAL, vec4(normal, 0.0));
+  record(ASKED_MESH_NORMAL, vec4(meshNormal, 0.0));
+  record(ASKED_ALBEDO, vec4(albedo, 0.0));
+  record(ASKED_RADIANCE, vec4(result, 0.0));
+  record(ASKED_INDIRECT, vec4(indirect, 0.0));
 #endif
   if (indirectIsRefused()) result = vec3(1.0, 0.0, 0.0) / frame.exposure;
   radiance = vec4(result, 1.0);
+  if (isCutOut) discard;
 }

@@ -1,4 +1,5 @@
 // Draws the parts of a line behind the picture's surfaces faint and dashed.
+#include "lib/clamped_int.glsl"
 layout(binding = 0) uniform sampler2D depthTexture;
 uniform bool hasDepth;
 uniform vec2 middle;
@@ -18,7 +19,7 @@ void main() {
   if (any(lessThan(place, vec2(0.0))) || any(greaterThan(place, vec2(1.0)))) discard;
   if (hasDepth) {
     ivec2 size = textureSize(depthTexture, 0);
-    float depth = texelFetch(depthTexture, clamp(ivec2(place * vec2(size)), ivec2(0), size - 1), 0).r;
+    float depth = texelFetch(depthTexture, clampedInt(place * vec2(size), ivec2(0), size - 1), 0).r;
     float surface = planes.x * planes.y / mix(planes.y, planes.x, depth);
     bool dash = fract((gl_FragCoord.x + gl_FragCoord.y) / 8.0) < 0.5;
     if (1.0 / vInverseDepth > 1.01 * surface) alpha *= dash ? 0.45 : 0.08;

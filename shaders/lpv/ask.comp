@@ -1,5 +1,6 @@
 // Lists what the lookup reads from each cell for one point: one entry per cell. One invocation.
 layout(local_size_x = 1) in;
+#include "lib/clamped_int.glsl"
 #include "lpv/lookup.glsl"
 #include "forward/asked_parts.glsl"
 uniform vec3 askedPosition;
@@ -19,7 +20,8 @@ void main() {
     vec3 place = lpvPlace(k, askedPosition, askedNormal, border) - 0.5;
     vec4 lobe = lpvLobe(askedNormal);
     for (int i = 0; i < 8; ++i) {
-      ivec3 corner = ivec3(i & 1, i >> 1 & 1, i >> 2), texel = ivec3(floor(place)) + corner;
+      ivec3 corner = ivec3(i & 1, i >> 1 & 1, i >> 2),
+            texel = clampedInt(floor(place), ivec3(-2), ivec3(cells, cells, cells * lpv.shape.y)) + corner;
       vec3 near = mix(1.0 - fract(place), fract(place), vec3(corner));
       float share = weight * border * near.x * near.y * near.z;
       ivec3 cell = texel - ivec3(0, 0, k * cells);

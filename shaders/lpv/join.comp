@@ -25,7 +25,7 @@ uniform int cascade;
 float balanceAt(ivec3 cell) {
   int pairs = (lpv.shape.x + 1) / 2;
   vec3 texel = 0.5 * (vec3(cell) + 0.5) - 0.5;
-  ivec3 low = ivec3(floor(texel));
+  ivec3 low = ivec3(floor(texel));  // bounded: half a cell's index
   vec3 upper = texel - vec3(low);
   float balance = 0.0;
   for (int i = 0; i < 8; ++i) {

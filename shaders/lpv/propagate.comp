@@ -31,8 +31,8 @@ layout(std430, binding = 2) writeonly buffer Sums { vec4 sums[]; };
 #if FACE_KERNEL
 // Face by face in world axes, as the deviations need it.
 #define GATHER(axis, way, offset, stride, toFrame, fromFrame, face)                                                    \
-  if (uint(local.axis - int(way)) < uint(cells)) {                                                                     \
-    int from = at - int(way) * stride;                                                                                 \
+  if (uint(local.axis - way) < uint(cells)) { /* bounded: an integer */                                                \
+    int from = at - way * stride;                                                                                      \
     vec4 light[3] = vec4[3](SOURCE(from), SOURCE(from + channel), SOURCE(from + 2 * channel));                         \
     gatherFaces(light, way * offset, POTENTIAL(face), sum);                                                            \
   }
@@ -49,9 +49,9 @@ void gatherFaces(vec4 light[3], vec3 travel, vec4 potential, inout vec4 sum[3]) 
 // Gathers from the neighbour behind along one axis; `way` is +1 or -1, `stride` that axis' step in the buffer. toFrame
 // and fromFrame rotate (c0, x, y, z) into (c0, travel, u, v) and back. `face` is the index of the crossed face.
 #define GATHER(axis, way, offset, stride, toFrame, fromFrame, face)                                                    \
-  if (uint(local.axis - int(way)) < uint(cells)) {                                                                     \
+  if (uint(local.axis - way) < uint(cells)) { /* bounded: an integer */                                                \
     const vec4 turn = vec4(1.0, way, 1.0, 1.0);                                                                        \
-    int from = at - int(way) * stride;                                                                                 \
+    int from = at - way * stride;                                                                                      \
     FaceValues openings = solidAngles(transmittanceTowardsFaces(POTENTIAL(face).toFrame * turn));                      \
     sum[0] += (carry(SOURCE(from).toFrame * turn, openings) * turn).fromFrame;                                         \
     sum[1] += (carry(SOURCE(from + channel).toFrame * turn, openings) * turn).fromFrame;                               \
@@ -61,7 +61,7 @@ void gatherFaces(vec4 light[3], vec3 travel, vec4 potential, inout vec4 sum[3]) 
 
 void main() {
   uint group = gl_WorkGroupID.y * kGroupsInRow + gl_WorkGroupID.x;
-  if (group >= count) return;
+  if (group >= min(count, uint(brickCount())) || bricks[group] >= uint(brickCount())) return;
   int brick = int(bricks[group]), ofAxis = bricksOfAxis(), row = brick / ofAxis, slice = row / ofAxis,
       cascade = slice / ofAxis;
   int inBrick = int(gl_LocalInvocationID.x);
@@ -76,12 +76,12 @@ void main() {
   int facesOfAxis = corners * corners * corners * lpv.shape.y;
   vec4 sum[3] = vec4[3](vec4(0.0), vec4(0.0), vec4(0.0));
 
-  GATHER(x, 1.0, vec3(1, 0, 0), 1, xyzw, xyzw, corner)
-  GATHER(x, -1.0, vec3(1, 0, 0), 1, xyzw, xyzw, corner + 1)
-  GATHER(y, 1.0, vec3(0, 1, 0), cells, xzwy, xwyz, facesOfAxis + corner)
-  GATHER(y, -1.0, vec3(0, 1, 0), cells, xzwy, xwyz, facesOfAxis + corner + corners)
-  GATHER(z, 1.0, vec3(0, 0, 1), layer, xwyz, xzwy, 2 * facesOfAxis + corner)
-  GATHER(z, -1.0, vec3(0, 0, 1), layer, xwyz, xzwy, 2 * facesOfAxis + corner + corners * corners)
+  GATHER(x, 1, vec3(1, 0, 0), 1, xyzw, xyzw, corner)
+  GATHER(x, -1, vec3(1, 0, 0), 1, xyzw, xyzw, corner + 1)
+  GATHER(y, 1, vec3(0, 1, 0), cells, xzwy, xwyz, facesOfAxis + corner)
+  GATHER(y, -1, vec3(0, 1, 0), cells, xzwy, xwyz, facesOfAxis + corner + corners)
+  GATHER(z, 1, vec3(0, 0, 1), layer, xwyz, xzwy, 2 * facesOfAxis + corner)
+  GATHER(z, -1, vec3(0, 0, 1), layer, xwyz, xzwy, 2 * facesOfAxis + corner + corners * corners)
 
   for (int i = 0; i < 3; ++i) {
     next[at + i * channel] = kNextUnits * sum[i];

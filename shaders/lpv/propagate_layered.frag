@@ -39,7 +39,7 @@ void main() {
   for (int d = 0; d < 6; ++d) {
     vec3 travel = vec3(0.0);
     travel[d >> 1] = (d & 1) == 0 ? 1.0 : -1.0;
-    ivec3 neighbour = cell - ivec3(travel);
+    ivec3 neighbour = cell - ivec3(travel);  // bounded: -1, 0 or 1
     if (any(lessThan(neighbour, ivec3(0))) || any(greaterThanEqual(neighbour, ivec3(cells)))) continue;
     ivec3 at = neighbour + ivec3(0, 0, layers);
     vec4 source[3] =

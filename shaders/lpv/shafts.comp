@@ -72,7 +72,7 @@ void main() {
     float at = min(float(first) + float(kVolumeEvery) * part, float(steps));
     volume = volumeScattered(frame.cameraPosition + (range.x + at * piece) * ray, -ray);
 #endif
-    for (int i = first; i < min(first + kVolumeEvery, steps); ++i) {
+    for (int i = first; i < steps && i < first + kVolumeEvery; ++i) {
       vec3 light = volume;
 #if SUN
       light += sunScattered(frame.cameraPosition + (range.x + (float(i) + part) * piece) * ray, -ray);

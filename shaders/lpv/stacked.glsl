@@ -1,5 +1,6 @@
 // Trilinear interpolation in one cascade of a stack that lies in a buffer, x fastest. Values outside are zero, as with
 // filtered textures.
+#include "lib/clamped_int.glsl"
 struct StackedTexels {
   int at[8];
   float weight[8];
@@ -7,11 +8,11 @@ struct StackedTexels {
 
 StackedTexels stackedTexels(vec3 texel, int index) {
   int n = lpv.shape.x;
-  vec3 low = clamp(floor(texel - 0.5), -2.0, float(n) + 1.0);  // the integer of a huge number is undefined
-  vec3 upper = clamp(texel - 0.5 - low, 0.0, 1.0);
+  ivec3 low = clampedInt(floor(texel - 0.5), ivec3(-2), ivec3(n + 1));
+  vec3 upper = clamp(texel - 0.5 - vec3(low), 0.0, 1.0);
   StackedTexels result;
   for (int i = 0; i < 8; ++i) {
-    ivec3 bit = ivec3(i & 1, i >> 1 & 1, i >> 2), cell = ivec3(low) + bit;
+    ivec3 bit = ivec3(i & 1, i >> 1 & 1, i >> 2), cell = low + bit;
     vec3 weight = mix(1.0 - upper, upper, vec3(bit));
     bool inside = all(greaterThanEqual(cell, ivec3(0))) && all(lessThan(cell, ivec3(n)));
     cell = clamp(cell, ivec3(0), ivec3(n - 1));

@@ -1,6 +1,7 @@
 // The texels of a reflective shadow map that one invocation sums: a tile of TILE x TILE (4; 1: one atomic per light, as
 // published). The rows are traversed alternately left and right, so that successive texels are neighbours and mostly
 // fall into the same cell. Contributions are summed while the cell stays the same and only then added to it by atomics.
+#include "lib/clamped_int.glsl"
 const int kTile = TILE;
 ivec3 texelOfTile(ivec3 tile, int i) {
   int y = i / kTile, x = i % kTile;
@@ -11,7 +12,7 @@ ivec3 texelOfTile(ivec3 tile, int i) {
 #if FILL_FIXED
 #define COUNT_TYPE ivec4
 #define WORD_TYPE int
-#define STEPS(value, steps) ivec4(round((value) * (steps)))
+#define STEPS(value, steps) clampedInt(round((value) * (steps)), ivec4(-0x40000000), ivec4(0x40000000))
 #else
 #define COUNT_TYPE vec4
 #define WORD_TYPE float

@@ -1,5 +1,6 @@
 // Converts a virtual point light of the reflective shadow map for the grid; shared by all ways to fill it. Needs
 // lib/sh.glsl and lpv/common.glsl. LOWEST_CELL is 0; 1 with the deviation lpv.first-cell.
+#include "lib/clamped_int.glsl"
 #include "lib/finite.glsl"
 
 // Background, black, zero and non-finite texels carry no light.
@@ -13,7 +14,8 @@ bool isUsableVpl(vec4 position, vec3 normal, vec3 flux) {
 // surface [GPUPro2, p. 190].
 bool vplCell(int k, vec3 position, vec3 normal, out ivec3 cell) {
   float s = lpv.cascades[k].cellSize;
-  cell = ivec3(floor((position + 0.5 * s * normal - lpv.cascades[k].minimum) / s));
+  vec3 inCells = (position + 0.5 * s * normal - lpv.cascades[k].minimum) / s;
+  cell = clampedInt(floor(inCells), ivec3(-1), ivec3(lpv.shape.x));
   return all(greaterThanEqual(cell, ivec3(LOWEST_CELL))) && all(lessThan(cell, ivec3(lpv.shape.x)));
 }
 

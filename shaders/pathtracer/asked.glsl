@@ -22,6 +22,6 @@ void noteLight(Path path, PathNumbers numbers, vec3 light, uint kind, uint numbe
   if (path.scatterings < uint(PATH_ASKED_PLACES)) state[base + 1u + path.scatterings] = asPlace(from, 0.0);
   state[record] = uvec4(floatBitsToUint(light), numbers.sampleIndex);
   state[record + 1u] = uvec4(path.scatterings, kind, number, places);
-  for (uint i = 0u; i < places; ++i) state[record + 2u + i] = state[base + 1u + i];
+  for (uint i = 0u; i < uint(PATH_ASKED_PLACES) && i < places; ++i) state[record + 2u + i] = state[base + 1u + i];
   state[record + 2u + uint(PATH_ASKED_PLACES)] = asPlace(end, infinite ? 1.0 : 0.0);
 }

@@ -3,6 +3,7 @@
 // cells included. Tentative collisions are drawn at that bound's rate and classified as real or null at random
 // [Woodcock1965; Novak2018]. The channel that decides is chosen as in media.glsl, so that here too no weight exceeds
 // the number of channels.
+#include "lib/clamped_int.glsl"
 #include "pathtracer/media.glsl"
 
 layout(std430, binding = 0) restrict readonly buffer DensityRecords { DensityRecord densityRecords[]; };
@@ -16,7 +17,7 @@ float cellDensity(DensityRecord g, ivec3 cell) {
 // p: in cells from the box's minimum corner, within the box.
 float densityInside(DensityRecord g, vec3 p) {
   vec3 base = floor(p - 0.5), f = p - 0.5 - base;
-  ivec3 c = ivec3(base);
+  ivec3 c = clampedInt(base, ivec3(-1), g.size.xyz);
   float z0 = mix(mix(cellDensity(g, c), cellDensity(g, c + ivec3(1, 0, 0)), f.x),
                  mix(cellDensity(g, c + ivec3(0, 1, 0)), cellDensity(g, c + ivec3(1, 1, 0)), f.x), f.y);
   float z1 = mix(mix(cellDensity(g, c + ivec3(0, 0, 1)), cellDensity(g, c + ivec3(1, 0, 1)), f.x),
@@ -38,7 +39,7 @@ float densityIntegral(DensityRecord g, vec3 origin, vec3 direction, float near, 
   vec3 plane = mix(ceil(start - 0.5), floor(start - 0.5), greaterThanEqual(direction, vec3(0.0))) + 0.5;
   float from = near, sum = 0.0, atFrom = densityInside(g, start);
   int most = g.size.x + g.size.y + g.size.z + 3;
-  for (int i = 0; i < most && from < far; ++i) {
+  for (int i = 0; i < most && from < far; ++i) {  // ends: as many as a grid has planes
     ++loopTurns;
     float to = far;
     int axis = -1;
@@ -69,6 +70,9 @@ struct DensityMarch {
   ivec3 block;
 };
 
+// Segments of a ray, at most: it enters each layer of blocks once.
+int densityMostBlocks(DensityRecord g) { return g.blocks.x + g.blocks.y + g.blocks.z; }
+
 // False if the ray misses the box.
 bool densityMarchStart(DensityRecord g, vec3 origin, vec3 direction, float tMax, out DensityMarch march) {
   march = DensityMarch((origin - g.min) * g.cellsPerUnit, vec3(0.0), 0.0, 0.0, 0.0, ivec3(0));
@@ -90,7 +94,7 @@ bool densityMarchStart(DensityRecord g, vec3 origin, vec3 direction, float tMax,
   march.far = near;
   march.last = far;
   march.block =
-      clamp(ivec3(floor((march.origin + near * march.direction) / float(g.size.w))), ivec3(0), g.blocks.xyz - 1);
+      clampedInt(floor((march.origin + near * march.direction) / float(g.size.w)), ivec3(0), g.blocks.xyz - 1);
   return meets && near < far;
 }
 

@@ -41,8 +41,9 @@ void main() {
   } else if (what == 5) {
     vec3 q = channelProbabilities(p.a.xyz);
     MediumRecord medium = media[p.k.x];
-    r.a = vec4(scatteringWeight(medium, q, p.a.w), float(pickChannel(q, unit(p.k.y))));
-    r.b = vec4(passageWeight(medium, q, p.a.w), flightDistance(medium, int(r.a.w), p.k.z));
+    int channel = pickChannel(q, unit(p.k.y));
+    r.a = vec4(scatteringWeight(medium, q, p.a.w), float(channel));
+    r.b = vec4(passageWeight(medium, q, p.a.w), flightDistance(medium, channel, p.k.z));
   } else if (what == 6) {
     DensityRecord g = densityRecords[p.k.x];
     r.a.x = densityAt(g, (p.a.xyz - g.min) * g.cellsPerUnit);
@@ -53,7 +54,8 @@ void main() {
     DensityMarch march;
     float slack = 1e30, inBox = 0.0, parts = 0.0, depth = 0.0, bound;
     if (densityMarchStart(g, p.a.xyz, p.b.xyz, p.a.w, march))
-      while (densityMarchNext(g, march, bound)) {
+      // ends: as many as blocks
+      for (int left = densityMostBlocks(g); left > 0 && densityMarchNext(g, march, bound); --left) {
         float step = (march.far - march.near) / 64.0;
         for (int s = 0; s < 64; ++s) {
           float d = densityAt(g, march.origin + (march.near + (float(s) + 0.5) * step) * march.direction);
@@ -73,8 +75,10 @@ void main() {
     // k.x: entries, lowest rank first, 8 bits each; k.y: their number; k.z: exits, likewise; k.w: their number.
     uvec4 inside = uvec4(0u);
     bool sound = true;
-    for (uint n = 0u; n < p.k.y; ++n) sound = crossBoundary(inside, int((p.k.x >> (8u * n)) & 255u), true) && sound;
-    for (uint n = 0u; n < p.k.w; ++n) sound = crossBoundary(inside, int((p.k.z >> (8u * n)) & 255u), false) && sound;
+    for (uint n = 0u; n < 4u && n < p.k.y; ++n)
+      sound = crossBoundary(inside, int((p.k.x >> (8u * n)) & 255u), true) && sound;
+    for (uint n = 0u; n < 4u && n < p.k.w; ++n)
+      sound = crossBoundary(inside, int((p.k.z >> (8u * n)) & 255u), false) && sound;
     r.a = vec4(topRank(inside), mediumInside(inside), iorInside(inside), sound);
   }
   answers[i] = r;

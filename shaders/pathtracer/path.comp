@@ -343,6 +343,8 @@ void main() {
   Hit crossed;          // the boundary that a shadow ray is crossing
   bool right = true;    // whether the path could validly cross the boundary
 #endif
+  // ends: each ray of a path adds 4 turns, up to tracer.turns; between two of them lie at most 256 boundaries that a
+  // shadow ray crosses, with kMostBesides short rays each
   for (;;) {
 #if PARKED
     forgetAddresses();
@@ -415,7 +417,7 @@ void main() {
 #else
     bool any = job == kShadowRay;
 #endif
-    while (!isDone(traversal)) advanceRay(traversal, any);
+    for (int left = bvhNodeCount(); left > 0 && !isDone(traversal); --left) advanceRay(traversal, any);
     Hit hit = traversal.hit;
     if (!any) hit = finishRay(traversal, ray.direction);
 #if PARKED

@@ -13,9 +13,11 @@ void main() {
   float pdf = 0.0;
 #if PROBE == 0
   // a: pixel, sample, event, purpose.
-  PathNumbers numbers = PathNumbers(uint(a.x), uint(a.y), uint(b.x));
-  uvec4 words = randomWords(numbers, uint(a.z), uint(a.w));
-  first = vec4(randomPair(numbers, uint(a.z), uint(a.w)), vec2(words.xy >> 8u));
+  // bounded: tests ask for numbers that floats hold
+  uvec4 k = uvec4(a);
+  PathNumbers numbers = PathNumbers(k.x, k.y, uint(b.x));  // bounded: likewise
+  uvec4 words = randomWords(numbers, k.z, k.w);
+  first = vec4(randomPair(numbers, k.z, k.w), vec2(words.xy >> 8u));
   second = vec4(unitFloat(words.zw), float(scaledWord(words.x, 1000u)), 0.0);
 #elif PROBE == 1
   // a: o, alpha; b: i, eta.

@@ -5,6 +5,7 @@
 // LAMPS_OUTSIDE (no lamp is inside a dielectric), WALKS (dense media have clearance grids); deviations
 // DISTANCE_WITHOUT_PDF, BOOSTED_INTERACTION, ROULETTE_WITHOUT_DIVISION, ROULETTE_AT_SURFACES, STRAIGHT_SHADOW_RAYS,
 // UNATTENUATED_SHADOW_RAYS.
+#include "lib/clamped_int.glsl"
 #include "pathtracer/boundary.glsl"
 #if MEDIA
 #include "lib/angle.glsl"
@@ -109,12 +110,13 @@ vec3 mediumTransmittance(MediumRecord medium, vec3 origin, vec3 direction, float
     float bound = 0.0, t = 0.0;
     uint tries = 0u;
     bool goesOn = densityMarchStart(gridOf(medium), origin, direction, distance, march);
-    while (goesOn && densityMarchNext(gridOf(medium), march, bound)) {
+    int left = densityMostBlocks(gridOf(medium));
+    for (; left > 0 && goesOn && densityMarchNext(gridOf(medium), march, bound); --left) {  // ends: as many as blocks
       ++loopTurns;
       float rate = medium.majorant * bound;
       if (!(rate > 0.0)) continue;
       t = march.near;
-      for (;;) {
+      for (uint step = 0u; step <= kMostTries; ++step) {
         ++loopTurns;
         goesOn = ++tries <= kMostTries;
         if (!goesOn) break;
@@ -367,6 +369,8 @@ int scatterInMedium(inout Path path, MediumRecord medium, PathNumbers numbers, b
 }
 
 #if HETEROGENEOUS
+const uint kMostTracked = 64u;  // tentative collisions of a flight before it is interrupted
+
 // Delta tracking over the free part of the ray. After a number of tentative collisions the flight is interrupted and
 // continues with the next ray: exponential flights have no memory, and no submission is held up.
 int trackDensity(inout Path path, MediumRecord medium, float distance, PathNumbers numbers, out bool collided) {
@@ -376,12 +380,13 @@ int trackDensity(inout Path path, MediumRecord medium, float distance, PathNumbe
   float bound = 0.0, t = 0.0;
   uint tries = 0u;
   bool goesOn = densityMarchStart(gridOf(medium), path.origin, path.direction, distance, march);
-  while (goesOn && densityMarchNext(gridOf(medium), march, bound)) {
+  int left = densityMostBlocks(gridOf(medium));
+  for (; left > 0 && goesOn && densityMarchNext(gridOf(medium), march, bound); --left) {  // ends: as many as blocks
     ++loopTurns;
     float rate = medium.majorant * bound;
     if (!(rate > 0.0)) continue;
     t = march.near;
-    for (;;) {
+    for (uint step = 0u; step < kMostTracked; ++step) {
       ++loopTurns;
       words = pcg4d(words);
       t += exponentialSample(words.x) / rate;
@@ -405,7 +410,7 @@ int trackDensity(inout Path path, MediumRecord medium, float distance, PathNumbe
         path.throughput *= collided ? medium.albedo : vec3(1.0);
       else
         path.throughput *= collided ? medium.albedo * share / real : (1.0 - share) / (1.0 - real);
-      goesOn = !collided && ++tries < 64u;
+      goesOn = !collided && ++tries < kMostTracked;
       if (!goesOn) break;
     }
   }
@@ -413,7 +418,7 @@ int trackDensity(inout Path path, MediumRecord medium, float distance, PathNumbe
   forgetAddresses();
   take(path);
   path.throughput = throughput;
-  bool arrives = !collided && tries < 64u;
+  bool arrives = !collided && tries < kMostTracked;
   if (!arrives) path.origin += t * path.direction;
   if (!arrives && !collided) {
     path.travelled += t;
@@ -498,7 +503,7 @@ bool walk(inout Path path, MediumRecord medium, inout float flight, PathNumbers 
   float margin = 2.0 * flightMargin();
   if (flight < 0.0) return true;
   for (uint step = 0u; step < kWalkSteps; ++step) {
-    ivec3 cell = clamp(ivec3((path.origin - interior.min) / interior.cell), ivec3(0), last);
+    ivec3 cell = clampedInt((path.origin - interior.min) / interior.cell, ivec3(0), last);
     float radius =
         texelFetch(clearances, interior.clearance + cell.x + interior.size.x * (cell.y + interior.size.y * cell.z)).x;
     if (!(flight + margin < radius - length(path.origin - interior.min - (vec3(cell) + 0.5) * interior.cell)))

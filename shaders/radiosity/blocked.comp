@@ -19,5 +19,5 @@ void main() {
   ray.tMin = 0.0;
   ray.direction = r.direction.xyz;
   ray.tMax = 0.99999;
-  blocked[index] = anyHit(ray, uint(r.origin.w)) ? 1u : 0u;
+  blocked[index] = anyHit(ray, uint(r.origin.w)) ? 1u : 0u;  // bounded: a patch's number
 }

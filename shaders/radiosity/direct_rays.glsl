@@ -38,9 +38,9 @@ vec3 directIrradiance(vec3 position, vec3 normal, vec3 face, float plane, float 
        v = cross(normal, u);
   vec2 shift = directShift(uvec2(gl_FragCoord.xy));
   vec3 sum = vec3(0.0);
-  for (int i = 0; i < directHead.x; ++i) {
+  for (int i = 0; i < directLights.length() && i < directHead.x; ++i) {
     DirectLight light = directLights[i];
-    int kind = int(light.a.w);
+    int kind = int(light.a.w);  // bounded: 0 to 3
     vec3 facing = kind == 0 ? cross(light.b.xyz, light.c.xyz) : vec3(0.0);
     vec3 unblocked = vec3(0.0);
     if (kind == 0) {
@@ -59,7 +59,7 @@ vec3 directIrradiance(vec3 position, vec3 normal, vec3 face, float plane, float 
     if (!any(greaterThan(unblocked, vec3(0.0)))) continue;
     float open = 0.0, all = 0.0;
     int rays = kind == 0 ? directHead.y : 1;
-    for (int k = 0; k < rays; ++k) {
+    for (int k = 0; k < 4096 && k < rays; ++k) {
       // The R2 sequence, based on the plastic number [Roberts2018], shifted per pixel and folded onto the triangle.
       vec2 xi = fract(shift + float(k + 1) * vec2(0.7548776662, 0.5698402910));
       if (xi.x + xi.y > 1.0) xi = 1.0 - xi;
@@ -85,7 +85,7 @@ vec3 directIrradiance(vec3 position, vec3 normal, vec3 face, float plane, float 
     vec3 arriving = all > 0.0 ? unblocked * (open / all) : vec3(0.0);
     sum += arriving;
 #if ASKED
-    asked[ASKED_LIGHTS + i] = vec4(reflection * arriving, 0.0);
+    record(ASKED_LIGHTS + i, vec4(reflection * arriving, 0.0));
 #endif
   }
   return sum;

@@ -10,15 +10,15 @@ void draw(FaceTriangle f, int face, int firstPixel, int index) {
     vec4 value = valueAt(w);
     if (covers(w, value)) atomicMax(keys[w.rowStart + w.column], keyOf(value.w, f.front, uint(index)));
     advance(w, f);
-  } while (w.row <= f.high.y);
+  } while (w.row <= f.high.y);  // ends: rows and columns are clamped to the face
 }
 
 void main() {
 #if LARGE
-  for (uint item = gl_WorkGroupID.x; item < largeCount; item += gl_NumWorkGroups.x) {
+  for (uint item = gl_WorkGroupID.x; item < uint(large.length()) && item < largeCount; item += gl_NumWorkGroups.x) {
     int hemicube = int(large[item]) / patchCount, index = int(large[item]) % patchCount;
     Triangle t = triangleOf(frames[hemicube], index);
-    for (int row = int(gl_LocalInvocationID.x); row < rowsPerHemicube(); row += 64) {
+    for (int row = int(gl_LocalInvocationID.x); row < 3 * faceSize; row += 64) {
       ivec2 place = faceAndRow(row);
       FaceTriangle f = onFace(place.x, t);
       f.low.y = max(f.low.y, place.y);
@@ -44,8 +44,8 @@ void main() {
       if (large || faces == 0u) f.high.y = -1;
       draw(f, face, hemicube * pixelsPerHemicube(), index);
       faces &= faces - 1u;
-    } while (faces != 0u);
+    } while (faces != 0u);  // ends: each turn clears a bit
     if (tooLarge) listLarge(hemicube * patchCount + index);
-  } while (++hemicube < end);
+  } while (++hemicube < end);  // ends: both follow from uniforms
 #endif
 }

@@ -2,6 +2,7 @@
 // visibility. That applies to triangles that cover many pixels (exact except at the border), near ones (averaged over
 // the receiving patch too [BaumRushmeierWinget1989]) and small sources. Each invocation takes entries of pass 2's list
 // with the whole dispatch as stride.
+#include "lib/clamped_int.glsl"
 #include "radiosity/hemicube.glsl"
 #include "radiosity/polygon.glsl"
 #include "radiosity/triangle_parts.glsl"
@@ -39,7 +40,7 @@ float meanOfParts(vec3 r0, vec3 r1, vec3 r2, int parts, uint hidden, Triangle t)
   float sum = 0.0, open = 0.0;
   float side = 1.0 / float(parts);
   int i = 0, j = 0;  // strip and position in it: a strip has 2 (parts - i) - 1 parts, every second one upside down
-  for (int k = 0; k < parts * parts || open == 0.0; ++k) {
+  for (int k = 0; k < parts * parts || (k == parts * parts && open == 0.0); ++k) {  // ends: parts is clamped
     // use the hemicube's own position; also if every centroid lies in the hidden area
     bool own = parts == 1 && hidden != 0u || k == parts * parts;
     float third = (j & 1) == 0 ? 1.0 / 3.0 : 2.0 / 3.0;
@@ -61,9 +62,9 @@ float receivedFrom(Frame frame, int self, Triangle t) {
   float away = max(
       length((t.a + t.b + t.c) / 3.0) - 0.5 * max(length(t.b - t.a), max(length(t.c - t.b), length(t.a - t.c))), 0.0);
   float wanted = nearDistance * size / max(away, 1e-3 * size);
-  int parts = clamp(int(ceil(wanted)), 1, mostParts);
+  int parts = clampedInt(ceil(wanted), 1, mostParts);
   if (nearDistance <= 0.0) return pointToTriangle(t.a, t.b, t.c);
-  uint hidden = uint(frame.u.w);
+  uint hidden = uint(frame.u.w);  // bounded: one bit for each of kPatchParts
   if (parts == 1 && hidden == 0u) {
     vec3 middle = (r0 + r1 + r2) / 3.0;
     return pointToTriangle(t.a, t.b, t.c) * clamp(spread((t.a + t.b + t.c) / 3.0, cross(t.b - t.a, t.c - t.a),
@@ -92,7 +93,8 @@ bool isSeen(Frame frame, int self, Triangle t) {
 #endif
 
 void main() {
-  for (uint i = gl_GlobalInvocationID.x; i < listed; i += gl_NumWorkGroups.x * gl_WorkGroupSize.x) {
+  uint stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+  for (uint i = gl_GlobalInvocationID.x; i < uint(list.length()) && i < listed; i += stride) {
 #if ITEMS
     int entry = int(keptList[list[i].x].x);
 #else

@@ -12,9 +12,12 @@ layout(std430, binding = 5) readonly buffer Sources { uint sources[]; };
 layout(std430, binding = 7) buffer KeptList { uint keptGroups, keptOne0, keptOne1, keptCount; uvec2 keptList[]; };
 
 void keep(int hemicube, int patchIndex, float delta) {
+  if (uint(patchIndex) >= uint(patchCount)) return;
   int entry = hemicube * patchCount + patchIndex;
-  if (atomicAdd(kept[entry], max(uint(delta * KEPT_WHOLE + 0.5), 1u)) != 0u || sources[patchIndex] != 0u) return;
+  uint share = uint(delta * KEPT_WHOLE + 0.5);  // bounded: all delta form factors add up to 1
+  if (atomicAdd(kept[entry], max(share, 1u)) != 0u || sources[patchIndex] != 0u) return;
   uint slot = atomicAdd(keptCount, 1u);
+  if (slot >= uint(keptList.length())) return;
   keptList[slot].x = uint(entry);
   if (slot % 64u == 0u) atomicMax(keptGroups, slot / 64u + 1u);
 }

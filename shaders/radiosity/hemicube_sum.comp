@@ -50,7 +50,7 @@ vec3 sumOf(FaceTriangle f, int face, int firstPixel, int index) {
                 delta > 0.0 ? 1.0 : 0.0);
 #endif
     advance(w, f);
-  } while (w.row <= f.high.y);
+  } while (w.row <= f.high.y);  // ends: rows and columns are clamped to the face
   return sum;
 }
 
@@ -81,7 +81,7 @@ shared vec3 sums[64];
 
 void main() {
 #if LARGE
-  for (uint item = gl_WorkGroupID.x; item < largeCount; item += gl_NumWorkGroups.x) {
+  for (uint item = gl_WorkGroupID.x; item < uint(large.length()) && item < largeCount; item += gl_NumWorkGroups.x) {
     int place = int(large[item]);
 #if ITEMS
     int entry = int(keptList[place].x);
@@ -91,7 +91,7 @@ void main() {
     int hemicube = entry / patchCount, index = entry % patchCount;
     Triangle t = triangleOf(frames[hemicube], index);
     vec3 sum = vec3(0.0);
-    for (int row = int(gl_LocalInvocationID.x); row < rowsPerHemicube(); row += 64) {
+    for (int row = int(gl_LocalInvocationID.x); row < 3 * faceSize; row += 64) {
       ivec2 place = faceAndRow(row);
       FaceTriangle f = onFace(place.x, t);
       f.low.y = max(f.low.y, place.y);
@@ -139,11 +139,11 @@ void main() {
       if (large || faces == 0u) f.high.y = -1;
       sum += sumOf(f, face, hemicube * pixelsPerHemicube(), index);
       faces &= faces - 1u;
-    } while (faces != 0u);
+    } while (faces != 0u);  // ends: each turn clears a bit
 #if ITEMS
     if (tooLarge) listLarge(place);  // otherwise pass 1 has done so
 #endif
     if (!tooLarge) write(place, hemicube, index, t, above, sum);
-  } while (++hemicube < end);
+  } while (++hemicube < end);  // ends: both follow from uniforms
 #endif
 }

@@ -132,13 +132,12 @@ bool isLarge(FaceTriangle t) {
 #if !LARGE
 void listLarge(int place) {
   uint slot = atomicAdd(largeCount, 1u);
-  large[slot] = uint(place);
+  if (slot < uint(large.length())) large[slot] = uint(place);
   atomicMax(largeGroups, min(slot + 1u, kMostGroups));
 }
 #endif
 
-// All 3 N rows of a hemicube: the face and the row in it.
-int rowsPerHemicube() { return 3 * faceSize; }
+// Of the 3 N rows of a hemicube: the face and the row in it.
 ivec2 faceAndRow(int row) {
   int half_ = faceSize / 2;
   return row < faceSize ? ivec2(0, row) : ivec2(1 + (row - faceSize) / half_, (row - faceSize) % half_);

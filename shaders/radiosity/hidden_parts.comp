@@ -26,7 +26,7 @@ void main() {
   vec3 u = normalize(r.b.xyz - r.a.xyz), v = cross(n, u);
   vec3 direction = radius * (cos(angle) * u + sin(angle) * v) + sqrt(1.0 - radius * radius) * n;
   Ray ray = Ray(offsetRay(at, n, r.normal.w), 0.0, direction, 3e38);
-  PatchMet met = patchMet(ray, uint(r.a.w));
+  PatchMet met = patchMet(ray, uint(r.a.w));  // bounded: a patch's number
   uint result = 0u;
   if (met.patchIndex != kNoHit) {
     // Barycentrics of the hit point.

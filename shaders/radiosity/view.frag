@@ -46,13 +46,13 @@ void main() {
     result += emitted;
 #endif
 #if ASKED
-    asked[ASKED_POSITION] = vec4(vPosition, 1.0);
-    asked[ASKED_ALBEDO] = vec4(albedo, 0.0);
-    asked[ASKED_RADIANCE] = vec4(result, 0.0);
-    asked[ASKED_INDIRECT] = vec4(vIrradiance, 0.0);
-    asked[ASKED_CORNERS] = vec4(vCorner, float(vPatch));
+    record(ASKED_POSITION, vec4(vPosition, 1.0));
+    record(ASKED_ALBEDO, vec4(albedo, 0.0));
+    record(ASKED_RADIANCE, vec4(result, 0.0));
+    record(ASKED_INDIRECT, vec4(vIrradiance, 0.0));
+    record(ASKED_CORNERS, vec4(vCorner, float(vPatch)));
 #if EMISSION
-    asked[ASKED_EMISSION] = vec4(emitted, 0.0);
+    record(ASKED_EMISSION, vec4(emitted, 0.0));
 #endif
 #endif
   }

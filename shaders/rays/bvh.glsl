@@ -8,6 +8,7 @@
 // llvmpipe gathers from them three times as fast as from storage blocks.
 #include "shared/bindings.h"
 #include "shared/bvh.h"
+#include "lib/finite.glsl"
 #include "lib/float_pairs.glsl"
 
 layout(binding = UNIT_BVH_NODES) uniform usamplerBuffer bvhNodes;      // BVH_NODE_TEXELS per BvhNode
@@ -144,10 +145,20 @@ int bvhStackPlace(int entry) { return entry; }
 // after 65,535 iterations of a vector of lanes).
 uint loopTurns = 0u;
 
+// A traversal visits no node twice, so this bounds its turns whatever the nodes hold.
+int bvhNodeCount() { return textureSize(bvhNodes) / BVH_NODE_TEXELS; }
+
+// Whether a ray is one: all finite, and with a direction. Others hit nothing, but their comparisons would not say so:
+// min and max drop NaN on GPUs, and a ray of NaN would visit the whole hierarchy.
+bool isRay(Ray ray) {
+  bvec2 range = lessThanEqual(floatBitsToUint(vec2(ray.tMin, ray.tMax)) & 0x7fffffffu, uvec2(0x7f800000u));
+  return allFinite(ray.origin) && allFinite(ray.direction) && ray.direction != vec3(0.0) && all(range);
+}
+
 BvhTraversal beginRay(Ray ray, uint skipTriangle) {
   // The root is treated as the only child of a virtual parent, in the slot that is visited first.
   return BvhTraversal(bvhPrepare(ray), ray.tMin, skipTriangle, Hit(ray.tMax, kNoHit, vec2(0.0)), uvec2(0u, 0x80000000u),
-                      0, 0);
+                      isRay(ray) ? 0 : -1, 0);
 }
 
 bool isDone(BvhTraversal s) { return s.top < 0; }
@@ -184,7 +195,7 @@ void advanceRay(inout BvhTraversal s, bool any) {
                      base - error, base + error, s.tMin, s.hit.t, n1.w, s.ray.octant);
   s.siblings = uvec2(n1.x, (hits & 0xff000000u) | (n0.w >> 24));
   uint leaves = hits & 0x00ffffffu;  // triangles to test, counted from the node's first
-  while (leaves != 0u) {
+  while (leaves != 0u) {  // ends: each turn clears the highest of 24 bits
     int k = bvhHighest(leaves);
     leaves &= ~(1u << k);
     ++s.tested;
@@ -274,14 +285,14 @@ Hit finishRay(BvhTraversal s, vec3 direction) {
 // The nearest hit; its triangle is kNoHit if there is none. skipTriangle: the triangle the ray starts on, or kNoHit.
 Hit closestHit(Ray ray, uint skipTriangle) {
   BvhTraversal s = beginRay(ray, skipTriangle);
-  while (!isDone(s)) advanceRay(s, false);
+  for (int left = bvhNodeCount(); left > 0 && !isDone(s); --left) advanceRay(s, false);
   return finishRay(s, ray.direction);
 }
 
 // Whether anything is hit at all.
 bool anyHit(Ray ray, uint skipTriangle) {
   BvhTraversal s = beginRay(ray, skipTriangle);
-  while (!isDone(s)) advanceRay(s, true);
+  for (int left = bvhNodeCount(); left > 0 && !isDone(s); --left) advanceRay(s, true);
   return s.hit.triangle != kNoHit;
 }
 

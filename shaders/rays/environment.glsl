@@ -2,6 +2,7 @@
 // rotated about +y. The picture's texels are sampled in proportion to their power, row first, by alias tables
 // [Vose1991]; uniformly over each texel's solid angle.
 #if ENVIRONMENT_PICTURE
+#include "lib/clamped_int.glsl"
 #include "lib/latitude_longitude.glsl"
 layout(binding = 1) uniform sampler2D environmentPicture;  // radiance without the factor
 // per row: threshold of 2^32, alias (a column); bits of the density over solid angle, 1/sr
@@ -16,14 +17,14 @@ vec2 environmentTexel(vec3 direction, ivec2 size) {
 // Nearest texel, without filtering: sampling and evaluation agree.
 vec3 environmentRadiance(vec3 direction) {
   ivec2 size = textureSize(environmentPicture, 0);
-  ivec2 texel = clamp(ivec2(environmentTexel(direction, size)), ivec2(0), size - 1);
+  ivec2 texel = clampedInt(environmentTexel(direction, size), ivec2(0), size - 1);
   return tracer.environment * texelFetch(environmentPicture, texel, 0).rgb;
 }
 
 // Density of environmentSample for a direction, 1/sr.
 float environmentPdf(vec3 direction) {
   ivec2 size = textureSize(environmentPicture, 0);
-  ivec2 texel = clamp(ivec2(environmentTexel(direction, size)), ivec2(0), size - 1);
+  ivec2 texel = clampedInt(environmentTexel(direction, size), ivec2(0), size - 1);
   return uintBitsToFloat(texelFetch(environmentTable, texel, 0).z);
 }
 

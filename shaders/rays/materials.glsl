@@ -1,5 +1,6 @@
 // Evaluates a ray's hit: position, normals and material. Storage blocks 2 (triangles) and 3 (materials). Textures lie
 // in one atlas. They are read bilinearly from the finest level, since many paths per pixel filter them.
+#include "lib/clamped_int.glsl"
 #include "shared/bindings.h"
 #if TEXTURES || ALPHA_MASKS
 layout(binding = 0) uniform sampler2DArray textureAtlas;
@@ -44,7 +45,7 @@ vec4 readAtlas(sampler2DArray atlas, PathTexture t, vec2 texCoord) {
   vec2 p = fract(texCoord) * vec2(size) - 0.5;
   vec2 floored = floor(p);
   vec2 f = p - floored;
-  ivec2 low = ivec2(floored), high = low + 1;
+  ivec2 low = clampedInt(floored, ivec2(-1), size - 1), high = low + 1;
   low += size * ivec2(lessThan(low, ivec2(0)));
   high -= size * ivec2(greaterThanEqual(high, size));
   ivec2 corner = ivec2(t.x, t.y);

@@ -56,7 +56,7 @@ uint pcgOutput(uint state) {
 uvec4 linearWords(PathNumbers numbers, uint event, uint purpose) {
   uint steps = ((numbers.sampleIndex * 64u + event) * 16u + purpose) * 4u + 1u;
   uint factor = 747796405u, addend = 1u, state = numbers.pixel + numbers.seed;
-  for (; steps > 0u; steps >>= 1u) {
+  for (; steps > 0u; steps >>= 1u) {  // ends: after 32 bits
     if ((steps & 1u) != 0u) state = state * factor + addend;
     addend *= factor + 1u;
     factor *= factor;

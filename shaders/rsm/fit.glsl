@@ -1,5 +1,6 @@
 // Which of the low-resolution samples around a pixel can represent it [Dachsbacher2005]: a similar normal, near its
 // tangent plane, not far away.
+#include "lib/clamped_int.glsl"
 #include "lib/frame.glsl"
 #include "forward/visible.glsl"
 #include "rsm/low.glsl"
@@ -22,7 +23,7 @@ LowSample lowSample(ivec2 pixel, int i) {
   float stepLength = float(lowStep) * pixelWidth * distance(position, frame.cameraPosition);
   ivec2 lowSize = (textureSize(visibleDepth, 0) + lowStep - 1) / lowStep;
   vec2 at = (vec2(pixel) - float(lowStep / 2)) / float(lowStep);
-  ivec2 base = clamp(ivec2(floor(at)), ivec2(0), max(lowSize - 2, 0));
+  ivec2 base = clampedInt(floor(at), ivec2(0), max(lowSize - 2, 0));
   vec2 f = clamp(at - vec2(base), 0.0, 1.0);
   ivec2 corner = ivec2(i & 1, i >> 1);
   LowSample result;

@@ -49,10 +49,9 @@ vec3 gatherIrradiance(vec3 position, vec3 normal, float rotation) {
   vec3 sum = vec3(0.0);
   for (int i = 0; i < pattern.length(); ++i) {
     vec3 p = pattern[i].xyz;
-    vec2 at = floor(centre + radius * vec2(c * p.x + s * p.y, c * p.y - s * p.x));
-    // There is no light beyond the map. Compared as floats, since converting a huge or undefined number to an integer
-    // is undefined.
-    if (!(min(at.x, at.y) >= 0.0 && at.x < float(size.x) && at.y < float(size.y))) continue;
+    // There is no light beyond the map.
+    ivec2 at = clampedInt(floor(centre + radius * vec2(c * p.x + s * p.y, c * p.y - s * p.x)), ivec2(-1), size);
+    if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, size))) continue;
     RsmSurfel surfel = rsmSurfel(ivec3(at, 0));
     if (!surfel.lit) continue;
     vec3 part = p.z * surfelIrradiance(surfel, position, normal);

@@ -10,8 +10,8 @@ layout(binding = 5) uniform usampler2D refusedPixels;
 uniform ivec2 listPart;  // of a submission: from, to
 
 void main() {
-  uint end = min(work.refused, uint(listPart.y));
-  for (uint i = uint(listPart.x) + gl_GlobalInvocationID.x; i < end; i += gl_NumWorkGroups.x * WORK_GROUP) {
+  uint first = uint(listPart.x) + gl_GlobalInvocationID.x;
+  for (uint i = first; i < uint(listPart.y) && i < work.refused; i += gl_NumWorkGroups.x * WORK_GROUP) {
     int width = textureSize(refusedPixels, 0).x;
     uint refused = texelFetch(refusedPixels, ivec2(int(i) % width, int(i) / width), 0).x;
     ivec2 pixel = ivec2(refused & 0xffffu, refused >> 16);

@@ -1,6 +1,6 @@
 // Interpolates a pixel's irradiance from the 4 nearest low-resolution samples if at least 3 of them fit it: a similar
 // normal, near its tangent plane, not far away [Dachsbacher2005]. Weights are bilinear among those that fit. Every
-// other pixel is appended to the list for the full gather.
+// other pixel is appended to the list for the full gather, those of a group at once.
 #include "rsm/fit.glsl"
 #include "rsm/work.glsl"
 layout(std430, binding = 1) buffer Work { GatherWork work; };
@@ -9,11 +9,13 @@ layout(rgba32f, binding = 0) writeonly uniform image2D irradianceImage;  // w: 0
 layout(r32ui, binding = 1) writeonly uniform uimage2D refusedPixels;  // x | y << 16, row by row
 layout(binding = 5) uniform sampler2D lowIrradiance;
 uniform ivec2 firstPixel;  // of a part of the picture
-shared uint groupSurfaces;
+shared uint groupSurfaces, groupRefused, firstRefused;
 
 void main() {
-  if (gl_LocalInvocationIndex == 0u) groupSurfaces = 0u;
+  if (gl_LocalInvocationIndex == 0u) groupSurfaces = groupRefused = 0u;
   barrier();
+  bool isRefused = false;
+  uint inGroup = 0u;  // its place among those that the group refuses
   ivec2 pixel = firstPixel + ivec2(gl_GlobalInvocationID.xy);
   if (all(lessThan(pixel, imageSize(irradianceImage)))) {
     if (isVisibleSurface(pixel)) {
@@ -29,11 +31,8 @@ void main() {
       if (fits >= 3 && sum.w > 1e-3) {
         imageStore(irradianceImage, pixel, vec4(sum.rgb / sum.w, 1.0));
       } else {
-        uint index = atomicAdd(work.refused, 1u);
-        int width = imageSize(refusedPixels).x;
-        imageStore(refusedPixels, ivec2(int(index) % width, int(index) / width),
-                   uvec4(uint(pixel.x) | uint(pixel.y) << 16));
-        if (index % WORK_GROUP == 0u && index / WORK_GROUP < 65535u) atomicAdd(work.groupsX, 1u);
+        isRefused = true;
+        inGroup = atomicAdd(groupRefused, 1u);
       }
     } else {
       imageStore(irradianceImage, pixel, vec4(0.0));
@@ -41,4 +40,12 @@ void main() {
   }
   barrier();
   if (gl_LocalInvocationIndex == 0u && groupSurfaces > 0u) atomicAdd(work.surfaces, groupSurfaces);
+  if (gl_LocalInvocationIndex == 0u && groupRefused > 0u) {
+    firstRefused = atomicAdd(work.refused, groupRefused);
+    atomicMax(work.groupsX, min((firstRefused + groupRefused + WORK_GROUP - 1u) / WORK_GROUP, 65535u));
+  }
+  barrier();
+  if (!isRefused) return;
+  int index = int(firstRefused + inGroup), width = imageSize(refusedPixels).x;
+  imageStore(refusedPixels, ivec2(index % width, index / width), uvec4(uint(pixel.x) | uint(pixel.y) << 16));
 }

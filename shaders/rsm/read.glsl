@@ -2,6 +2,7 @@
 // here.
 // MAP_LIGHT tells the kind of light, which determines the texels' edges and solid angles and the mapping of directions.
 #include "shared/bindings.h"
+#include "lib/clamped_int.glsl"
 #include "lib/frame.glsl"
 #define MAP_SUN 0
 #define MAP_SPOT 1
@@ -106,7 +107,7 @@ ivec3 rsmTexel(vec3 direction, out float solidAngle) {
       layer = face;
     }
   }
-  ivec2 size = rsmSize(), texel = clamp(ivec2(floor((0.5 * clip.xy / clip.w + 0.5) * vec2(size))), ivec2(0), size - 1);
+  ivec2 size = rsmSize(), texel = clampedInt(floor((0.5 * clip.xy / clip.w + 0.5) * vec2(size)), ivec2(0), size - 1);
   vec2 atDepth1 = (vec2(texel) + 0.5 - 0.5 * vec2(size)) * texelWidth;
   float cosAxis = inversesqrt(1.0 + dot(atDepth1, atDepth1));
   solidAngle = texelWidth * texelWidth * cosAxis * cosAxis * cosAxis;

@@ -11,6 +11,10 @@ SHARED_BEGIN
 #define LPV_NOWHERE 0xfffffffeu   // the ray met nothing
 #define LPV_GATHERED 0xffffffu  // path count of a receiver whose light was gathered at once
 #define LPV_LANES 64          // per work group, one path each
+#define LPV_PART_GROUPS 1792  // work groups of a submission, at most (engine/lpv/light_gather.hpp)
+#define LPV_PARTS 10          // of the list of receivers to be lit: 2^14 groups
+#define LPV_MOST_OPENING 2048 // turns of a lane that may open nodes of a light tree
+#define LPV_MOST_NEAR 12      // texels of a lane that give light by their outline
 #define LPV_FULL_PATHS 256.0  // from here on: full weight, no averaging with neighbours
 #define LPV_FRONT 1u
 #define LPV_FIRST 2u

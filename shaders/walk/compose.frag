@@ -2,6 +2,7 @@
 // exposure, tone map and zoom. Each is shown as it is or as its difference from a reference. A magnifier follows the
 // cursor.
 // Curve and encoding: shaders/forward/tonemap.frag.
+#include "lib/clamped_int.glsl"
 #include "lib/tonemap.glsl"
 layout(binding = 0) uniform sampler2D leftPicture;    // linear radiance
 layout(binding = 1) uniform sampler2D rightPicture;
@@ -31,9 +32,9 @@ vec3 diverging(float t) {
 // Black (0) through red and yellow to white (1).
 vec3 heat(float t) { return clamp(vec3(3.0 * t, 3.0 * t - 1.0, 3.0 * t - 2.0), 0.0, 1.0); }
 
-vec3 shown(bool right, ivec2 texel) {
+vec3 shown(bool right, vec2 place) {
   ivec2 size = right ? textureSize(rightPicture, 0) : textureSize(leftPicture, 0);
-  texel = clamp(texel, ivec2(0), size - 1);
+  ivec2 texel = clampedInt(floor(place), ivec2(0), size - 1);
   vec3 radiance = right ? texelFetch(rightPicture, texel, 0).rgb : texelFetch(leftPicture, texel, 0).rgb;
   int view = right ? views.y : views.x;
   if (any(isnan(radiance)) || any(isinf(radiance))) return vec3(0.0, 1.0, 0.0);
@@ -82,10 +83,10 @@ void main() {
     return;
   }
   float side = 1.0 / (pixelsOfTexel * magnified / zoom);  // width of a pixel, in texels
-  int taps = clamp(int(ceil(side - 0.01)), 1, 4);
+  int taps = clampedInt(ceil(side - 0.01), 1, 4);
   vec3 sum = vec3(0.0);
-  for (int y = 0; y < taps; ++y)
-    for (int x = 0; x < taps; ++x)
-      sum += shown(right, ivec2(floor(place + side * ((vec2(x, y) + 0.5) / float(taps) - 0.5))));
+  for (int y = 0; y < 4 && y < taps; ++y)
+    for (int x = 0; x < 4 && x < taps; ++x)
+      sum += shown(right, place + side * ((vec2(x, y) + 0.5) / float(taps) - 0.5));
   displayColor = vec4(sum / float(taps * taps), 1.0);
 }

@@ -1,6 +1,7 @@
 // lucerna render --ask: the shares of a pixel's light add up to the picture's pixel, whatever the technique, and where
 // one lamp shines on a plane they are what can be computed by hand.
 #include "base/image.hpp"
+#include "support/faulty_shaders.hpp"
 #include "support/subprocess.hpp"
 #include "support/temp_folder.hpp"
 
@@ -13,6 +14,7 @@
 
 namespace {
 
+using lucerna::test::FaultyShaders;
 using lucerna::test::RunResult;
 using lucerna::test::TempFolder;
 using nlohmann::json;
@@ -90,6 +92,18 @@ TEST_F(Ask, SharesAddUpToThePixelOfPatches) {
 // The paths of the answer are those of the picture.
 TEST_F(Ask, SharesAddUpToThePixelOfPaths) {
   expectWhole(kCornell, kSmall + "--technique path --spp 96 --seed 7", 20, 50, 1e-4);
+}
+
+// Parts that do not add up to the pixel are not an answer.
+TEST_F(Ask, PartsThatDoNotAddUpAreAnError) {
+  const FaultyShaders shaders;
+  shaders.plant("forward/surface.frag", "record(term, vec4(radiance, 0.0));",
+                "record(term, vec4(1.1 * radiance, 0.0));");
+  const RunResult result =
+      lucerna::test::run("LUCERNA_SHADERS='" + shaders.path().string() + "' '" LUCERNA_BINARY "' render '" + kCornell +
+                         "' " + kSmall + "--technique direct --ask 12,40");
+  EXPECT_EQ(result.exitCode, 1) << result.out;
+  EXPECT_NE(result.err.find("its parts add up to"), std::string::npos) << result.err;
 }
 
 class AskPlane : public Ask {

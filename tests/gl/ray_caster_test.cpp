@@ -203,6 +203,36 @@ TEST_F(RayCasterOnGl, TracesNothingOneAndTheDegenerate) {
   EXPECT_GT(met, 50);
 }
 
+// On GPUs min and max drop NaN, and such a ray would visit every node.
+TEST_F(RayCasterOnGl, WhatIsNoRayVisitsNothing) {
+  const Scene scene = triangleSoup(2000, 0.1, glm::dvec3(0.0), 5);
+  const RayScene rayScene(scene, capabilities());
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInfinity = std::numeric_limits<float>::infinity();
+  const GlRay sound{{0.1f, 0.2f, 3.0f}, 0.0f, {0.0f, 0.0f, -1.0f}, 3e38f};
+  std::vector<GlRay> rays;
+  for (const float wrong : {kNan, -kNan, kInfinity, -kInfinity})
+    for (int axis = 0; axis < 3; ++axis) {
+      rays.insert(rays.end(), 2, sound);
+      rays[rays.size() - 2].origin[axis] = wrong;
+      rays[rays.size() - 1].direction[axis] = wrong;
+    }
+  rays.insert(rays.end(), 3, sound);
+  rays[rays.size() - 3].tMin = kNan;
+  rays[rays.size() - 2].tMax = kNan;
+  rays[rays.size() - 1].direction = glm::vec3(0.0f);
+  TraceOptions counting;
+  counting.countsWork = true;
+  for (const bool anyHit : {false, true}) {
+    counting.anyHit = anyHit;
+    for (const GlHit& hit : trace(library(), rayScene, rays, counting)) {
+      EXPECT_EQ(hit.triangle, kNoHit);
+      EXPECT_EQ(hit.t, 0.0f) << "nodes";
+      EXPECT_EQ(hit.barycentrics.x, 0.0f) << "triangles";
+    }
+    for (const GlHit& hit : trace(library(), rayScene, std::vector<GlRay>{sound}, counting)) EXPECT_GT(hit.t, 3.0f);
+  }
+}
+
 TEST_F(RayCasterOnGl, MeetsTheGiantAndTheTinyTheSliverAndTheDuplicate) {
   SceneBuilder builder;
   const int material = builder.material(glm::vec3(0.5f));

@@ -1,7 +1,10 @@
 // The longest submission of each raster technique: work items times turns, as gl/pieces.hpp counts them, not timed.
 // What is cut stays the same bit by bit. Those of path tracing, of radiosity's shadow rays and of hemicubes are in
 // PathTracerTest, RadiosityDirect and Hemicube.
+#include "gl/pieces.hpp"
+#include "lpv/light_gather.hpp"
 #include "render/renderer.hpp"
+#include "shared/lpv_receivers.h"
 #include "support/gl_fixture.hpp"
 #include "support/media_scenes.hpp"
 #include "support/small_scenes.hpp"
@@ -19,7 +22,7 @@ class Submissions : public test::SharedProgramsTest {
  protected:
   struct Drawn {
     Image picture;
-    double largestTurns;
+    double largestTurns, largestSubmission;
   };
   static Drawn drawn(const Scene& scene, RenderSettings settings, double unmeasuredTurns) {
     settings.size = {64, 48};
@@ -28,8 +31,9 @@ class Submissions : public test::SharedProgramsTest {
     settings.lpv.cascades.cells = 8;
     settings.unmeasuredTurns = unmeasuredTurns;
     Renderer renderer(context(), library(), scene, settings);
+    gl::Submission::forget();
     renderer.render(test::openBoxCamera());
-    return {renderer.readRadiance(), renderer.largestTurns()};
+    return {renderer.readRadiance(), renderer.largestTurns(), gl::Submission::largest()};
   }
   /// unmeasuredTurns: such that the picture takes many pieces of at least a work group.
   static void expectSameInPieces(const Scene& scene, const RenderSettings& settings, double unmeasuredTurns) {
@@ -38,6 +42,10 @@ class Submissions : public test::SharedProgramsTest {
     EXPECT_GT(whole.largestTurns, gl::kMostOverUnmeasured * unmeasuredTurns) << "nothing was cut";
     EXPECT_LE(cut.largestTurns, gl::kMostOverUnmeasured * unmeasuredTurns);
     EXPECT_GT(cut.largestTurns, 0.0);
+    EXPECT_LE(whole.largestSubmission, kMost);
+    EXPECT_LE(cut.largestSubmission,
+              settings.technique == Technique::lpv ? kMost : gl::kMostOverUnmeasured * unmeasuredTurns);
+    EXPECT_GE(cut.largestSubmission, cut.largestTurns);
     EXPECT_EQ(cut.picture.pixels, whole.picture.pixels);
     EXPECT_GT(meanOf(whole.picture).x, 0.0);
   }
@@ -108,6 +116,74 @@ TEST_F(Submissions, LightShafts) {
   settings.lpv.transport = LpvTransport::propagate;
   settings.lpv.shafts = true;
   expectSameInPieces(scene, settings, 65536.0);
+}
+
+// A watchdog times all that lies between two flushes: rounds of paths, parts of a list, steps, a map after the other.
+TEST_F(Submissions, RoundsAreHandedOverOneByOne) {
+  Scene scene = test::openBox();
+  scene.points.push_back({{0.3, 1.5, 0.2}, glm::vec3(2.0f)});
+  RenderSettings settings;
+  settings.technique = Technique::lpv;
+  settings.size = {16, 16};
+  settings.lpv.cascades.cells = 32;
+  settings.lpv.rays = 8;
+  settings.lpv.samples = 64;
+  settings.lpv.iterations = 128;
+  for (const LpvTransport transport : {LpvTransport::rays, LpvTransport::gather, LpvTransport::propagate}) {
+    settings.lpv.transport = transport;
+    settings.lpv.bounces = transport == LpvTransport::gather ? LpvSettings::kAllBounces : 1;
+    Renderer renderer(context(), library(), scene, settings);
+    gl::Submission::forget();
+    renderer.renderToTheEnd(test::openBoxCamera());
+    EXPECT_LE(gl::Submission::largest(), kMost) << static_cast<int>(transport);
+    EXPECT_GT(gl::Submission::largest(), 0.25 * kMost) << static_cast<int>(transport);
+  }
+}
+
+// The walk of shaders/lpv/gather/gather.comp through a light tree, with other choices of the nodes that are opened.
+double turnsOfWalk(int depth, int top, int layers, const std::function<bool(int turn, int depth)>& opens) {
+  const std::uint64_t bits = 2 * static_cast<std::uint64_t>(top);
+  const auto firstOf = [](int d) { return ((std::uint64_t{1} << (2 * d)) - 1) / 3; };
+  const auto depthOf = [&](std::uint64_t node) {
+    int d = 0;
+    while (firstOf(d + 1) <= node) ++d;
+    return d;
+  };
+  const std::uint64_t tops = static_cast<std::uint64_t>(layers) << bits, firstTop = firstOf(top);
+  std::uint64_t coarsest = 0, root = firstTop, node = root;
+  int turn = 0;
+  for (; coarsest < tops; ++turn) {
+    if (node < firstOf(depth) && turn < LPV_MOST_OPENING && opens(turn, depthOf(node))) {
+      node = 4 * node + 1;
+      continue;
+    }
+    while (node != root && (node & 3) == 0) node = (node - 1) >> 2;
+    if (node != root) {
+      ++node;
+      continue;
+    }
+    coarsest += LPV_LANES;
+    root = node = firstTop + (coarsest & ((std::uint64_t{1} << bits) - 1));
+  }
+  return turn;
+}
+
+TEST_F(Submissions, NoLaneGathersForLongerThanIsSaid) {
+  double longest = 0.0;
+  for (const auto& [depth, layers] : {std::pair(8, 1), {8, 6}, {12, 6}, {13, 1}}) {
+    const int top = std::min(depth - 1, LightTree::kTop);
+    // Without the texels near by, the way to a leaf and the ray.
+    const double most = LightGather::turnsOfLane(depth, top, layers) - LPV_MOST_NEAR - 4.0 * depth - gl::kTurnsOfRay;
+    for (int last = LPV_MOST_OPENING - 3 * depth; last <= LPV_MOST_OPENING; ++last) {
+      // Waits before the last levels, then opens all the way down.
+      const double turns =
+          turnsOfWalk(depth, top, layers, [&](int turn, int at) { return turn >= last - depth || at + 4 < depth; });
+      EXPECT_LE(turns, most) << depth << ", " << layers;
+      longest = std::max(longest, turns / most);
+    }
+    EXPECT_LE(LightGather::turnsOfLane(depth, top, layers) * LPV_LANES * LPV_PART_GROUPS, kMost);
+  }
+  EXPECT_GT(longest, 0.98);
 }
 
 // What the volume does in one go has a size of its own, which its settings limit; receivers come in lists that end

@@ -12,7 +12,7 @@ std::vector<GlHit> trace(gl::ProgramLibrary& programs, const RayScene& scene, st
   const gl::Program& program = programs.loadCompute("trace rays", "rays/trace_rays.comp",
                                                     {{"ALPHA_MASKS", options.alphaMasks},
                                                      {"ANY_HIT", options.anyHit},
-                                                     {"COUNT_WORK", 0},
+                                                     {"COUNT_WORK", options.countsWork},
                                                      {"OFFSET_ORIGINS", options.offsetOrigins},
                                                      {"SHARED_STACK", scene.sharedStack()}});
   std::vector<std::uint32_t> skip(options.skip.begin(), options.skip.end());

@@ -27,6 +27,7 @@ inline constexpr std::uint32_t kNoHit = 0xffffffffu;
 struct TraceOptions {
   bool anyHit = false;  ///< only GlHit::triangle is meant then: kNoHit or not
   bool alphaMasks = false;  ///< masked triangles have a hole where the first barycentric is below 1/2
+  bool countsWork = false;  ///< nodes that were visited and triangles that were tested instead of t and barycentrics
   bool offsetOrigins = false;  ///< origins are moved by offsetRay along the directions
   std::span<const std::uint32_t> skip;  ///< a triangle a ray; empty: none
 };

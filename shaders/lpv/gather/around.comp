@@ -9,6 +9,7 @@
 // `probes`, LINKS: only tells which points lie in a gap, as between a ceiling and the lamp on it, or within a solid, as
 // the floor below a column, and stand for no other part of their cell. No surface finds them any more.
 layout(local_size_x = 64) in;  // LPV_LANES
+#include "lib/clamped_int.glsl"
 #include "shared/bindings.h"
 #include "shared/path_tracer.h"
 layout(std140, binding = BLOCK_RECEIVER_PATHS) uniform PathBlock { PathConstants tracer; };
@@ -22,7 +23,7 @@ layout(std140, binding = BLOCK_RECEIVER_PATHS) uniform PathBlock { PathConstants
 layout(std430, binding = 0) restrict buffer LpvReceivers { LpvReceiver receivers[]; };
 layout(std430, binding = 1) readonly restrict buffer LpvLit { uint lit[]; };
 uniform uint last;              // 1: after this dispatch receivers have all their light
-uniform uint firstListed;       // of `lit`
+uniform uint firstGroup;       // of `lit`
 uniform float areaOverDensity;  // of emissive surfaces: area that a point stands for, times the triangle's pickDensity
 shared vec3 found[LPV_LANES];
 #if LINKS
@@ -72,8 +73,8 @@ uint pointNear(vec3 position, vec3 normal, vec4 xi) {
   vec3 lean = normal * normal, inCells = (position - bounceMinimum) / bounceCell;
   int axis = xi.w < lean.x ? 0 : xi.w < lean.x + lean.y ? 1 : 2;
   int face = faceOf(axis, normal[axis]);
-  ivec3 own = ivec3(floor(inCells));
-  uint point = pointOf(face, ivec3(floor(inCells + xi.xyz - 0.5)), position, normal);
+  ivec3 own = clampedInt(floor(inCells), ivec3(-2), bounceCells + 1);  // more than a cell outside remains outside
+  uint point = pointOf(face, clampedInt(floor(inCells + xi.xyz - 0.5), ivec3(-2), bounceCells + 1), position, normal);
   if (point == 0u) point = pointOf(face, own, position, normal);
   if (point != 0u) return point;
   // The surface was entered for the axis that it leans to most, maybe on the other side of a cell's border. Or its own
@@ -130,7 +131,7 @@ vec3 lookAround(LpvReceiver receiver, uint index, uint ray) {
   vec3 albedo = min(albedoAt(at), vec3(1.0));
 #if LINKS
   // Rounded down: no surface reflects more than it does.
-  uvec3 steps = uvec3(floor(albedo * 65535.0));
+  uvec3 steps = uvec3(clampedInt(floor(albedo * 65535.0), ivec3(0), ivec3(65535)));
   links[link] = point;
   bool inside = dot(normalOf(hit.triangle), direction) > 0.0 && hit.t < kNear * bounceCell;
   met[ray] = inside || hit.t < kGap * bounceCell ? 2u : 1u;
@@ -144,7 +145,10 @@ vec3 lookAround(LpvReceiver receiver, uint index, uint ray) {
 }
 
 void main() {
-  uint lane = gl_LocalInvocationID.x, index = lit[firstListed + gl_WorkGroupID.x];
+  uint lane = gl_LocalInvocationID.x, place = firstGroup + gl_WorkGroupID.x;
+  if (place >= uint(lit.length())) return;
+  uint index = lit[place];
+  if (index >= uint(receivers.length())) return;
   LpvReceiver receiver = receivers[index];
   vec3 own = vec3(0.0);
   for (int i = 0; i < RAYS; ++i) own += lookAround(receiver, index, lane + uint(i * LPV_LANES));
@@ -152,13 +156,13 @@ void main() {
   barrier();
   if (lane != 0u) return;
   // Groups lie in one row. A compiler that knew the number of lanes would load all of `found` into registers at once.
-  int lanes = LPV_LANES * int(gl_NumWorkGroups.y);
+  int lanes = min(LPV_LANES * int(gl_NumWorkGroups.y), LPV_LANES);
   vec3 sum = vec3(0.0);
-  for (int i = 0; i < lanes; ++i) sum += found[i];
+  for (int i = 0; i < lanes; ++i) sum += found[i];  // ends: at most LPV_LANES
   sum /= float(LPV_LANES * RAYS);
 #if LINKS
   uint surfaces = 0u, near = 0u;
-  for (int i = 0; i < lanes; ++i) {
+  for (int i = 0; i < lanes; ++i) {  // ends: at most LPV_LANES
     surfaces += min(met[i], 1u);
     near += met[i] / 2u;
   }

@@ -13,6 +13,7 @@
 // [Chao1982]). One ray per lane, systematically spread over all contributions, goes through voxels or through the
 // scene's hierarchy to a texel of such a node, drawn by its flux.
 layout(local_size_x = 64) in;  // LPV_LANES
+#include "lib/clamped_int.glsl"
 #include "shared/bindings.h"
 #define VISIBILITY_VOXELS 1
 #define VISIBILITY_RAYS 2
@@ -46,7 +47,7 @@ layout(binding = 7) uniform usamplerBuffer treeNodes;
 layout(std430, binding = 0) restrict buffer LpvReceivers { LpvReceiver receivers[]; };
 layout(std430, binding = 1) readonly restrict buffer LpvLit { uint lit[]; };
 uniform uint last;         // 1: after this dispatch receivers have all their light
-uniform uint firstListed;  // of `lit`
+uniform uint firstGroup;  // of `lit`
 #if SHARED_WITH_RAYS
 uniform float raysAround;  // of a receiver
 #endif
@@ -60,10 +61,6 @@ shared vec3 sent[LPV_LANES], arrived[LPV_LANES];
 
 const float kOff = 2.0;  // voxels by which both ends of a ray are moved off their surfaces
 const float kOpen = 4.0;         // radii
-const int kMostOpening = 2048;  // turns of a lane that may open nodes
-#if !PERSPECTIVE
-const int kMostNear = 12;  // texels of a lane that give light by their outline
-#endif
 
 LightNode nodeAt(uint node) {
   int at = TREE_TEXELS * int(node);
@@ -108,7 +105,7 @@ void add(inout Found found, vec3 given, uint node) {
 Found gatherAt(vec3 position, vec3 normal, uint lane, uint seed) {
   Found found = Found(vec3(0.0), 0.0, uvec4(0u), seed);
 #if !PERSPECTIVE
-  uint near[kMostNear];
+  uint near[LPV_MOST_NEAR];
   int nears = 0;
   vec3 edge1, edge2;
   rsmTexelEdges(edge1, edge2);
@@ -117,19 +114,21 @@ Found gatherAt(vec3 position, vec3 normal, uint lane, uint seed) {
   uint ofLayer = treeNodesOfLayer(), leaves = treeFirst(treeDepth), firstTop = treeFirst(treeTop);
   uint topBits = uint(2 * treeTop), tops = uint(treeLayers) << topBits, top = lane;
   uint root = firstTop + (top & ((1u << topBits) - 1u)), layerStart = (top >> topBits) * ofLayer, node = root;
-  for (int turn = 0; top < tops; ++turn) {
+  // Turns that may open nodes; then what is left: three siblings on each level, and the lane's coarsest nodes.
+  int most = LPV_MOST_OPENING + 3 * (treeDepth - treeTop) + 1 + int(tops) / LPV_LANES + 1;
+  for (int turn = 0; turn < most && top < tops; ++turn) {  // ends: most follows from uniforms
     LightNode here = nodeAt(layerStart + node);
     vec3 away = here.position - position;
     float r2 = dot(away, away), height = dot(normal, away);
     bool counts = here.radius >= 0.0 && height >= -here.radius, isLeaf = node >= leaves;
 #if !PERSPECTIVE
     float slope = here.area / across;
-    if (isLeaf && counts && r2 < edges2 * (1.0 + slope * slope) && nears < kMostNear) {
+    if (isLeaf && counts && r2 < edges2 * (1.0 + slope * slope) && nears < LPV_MOST_NEAR) {
       near[nears++] = node;
       counts = false;
     }
 #endif
-    if (counts && !isLeaf && turn < kMostOpening && r2 < kOpen * kOpen * here.radius * here.radius) {
+    if (counts && !isLeaf && turn < LPV_MOST_OPENING && r2 < kOpen * kOpen * here.radius * here.radius) {
       node = 4u * node + 1u;
       continue;
     }
@@ -137,7 +136,7 @@ Found gatherAt(vec3 position, vec3 normal, uint lane, uint seed) {
     if (counts && c1 > 0.0 && c2 > 0.0)
       add(found, ofPoint(here.flux, here.area, c1, c2, r2), layerStart + node);
     // The next node that is not below this one.
-    while (node != root && (node & 3u) == 0u) node = (node - 1u) >> 2u;
+    for (int up = treeDepth; up > 0 && node != root && (node & 3u) == 0u; --up) node = (node - 1u) >> 2u;
     if (node != root) {
       ++node;
       continue;
@@ -147,7 +146,7 @@ Found gatherAt(vec3 position, vec3 normal, uint lane, uint seed) {
     layerStart = (top >> topBits) * ofLayer;
   }
 #if !PERSPECTIVE
-  for (int i = 0; i < nears; ++i)
+  for (int i = 0; i < LPV_MOST_NEAR && i < nears; ++i)
     add(found, surfelIrradiance(rsmSurfel(ivec3(texelOf(near[i]), 0)), position, normal), near[i]);
 #endif
   return found;
@@ -158,7 +157,7 @@ Found gatherAt(vec3 position, vec3 normal, uint lane, uint seed) {
 // from it, since the node's own contribution leaves that out already. Those would count as hidden.
 uint leafOf(uint node, vec3 position, vec3 normal, float xi) {
   uint ofLayer = treeNodesOfLayer(), layerStart = node / ofLayer * ofLayer, leaves = layerStart + treeFirst(treeDepth);
-  while (node < leaves) {
+  for (int level = treeDepth; level > 0 && node < leaves; --level) {
     uint child = layerStart + 4u * (node - layerStart) + 1u;
     vec4 given;
     for (int i = 0; i < 4; ++i) {
@@ -174,7 +173,8 @@ uint leafOf(uint node, vec3 position, vec3 normal, float xi) {
     xi *= sum;
     int pick = 0;
     for (; pick < 3 && !(xi < given[pick]); ++pick) xi -= given[pick];
-    while (!(given[pick] > 0.0)) --pick;  // by rounding beyond the last of them
+    // By rounding beyond the last of them.
+    for (int i = 3; i > 0 && !(given[pick] > 0.0); --i) pick = max(pick - 1, 0);
     xi = clamp(xi / given[pick], 0.0, 0.9999999);
     node = child + uint(pick);
   }
@@ -197,7 +197,10 @@ bool arrives(LpvReceiver receiver, uint node) {
 #endif
 
 void main() {
-  uint lane = gl_LocalInvocationID.x, index = lit[firstListed + gl_WorkGroupID.x];
+  uint lane = gl_LocalInvocationID.x, place = firstGroup + gl_WorkGroupID.x;
+  if (place >= uint(lit.length())) return;
+  uint index = lit[place];
+  if (index >= uint(receivers.length())) return;
   LpvReceiver receiver = receivers[index];
   if ((receiver.state & LPV_ALONE) != 0u) return;  // what sees no surface lights none
   uint seed = pcg4d(uvec4(receiver.cell)).x;
@@ -216,9 +219,9 @@ void main() {
   barrier();
   if (all > 0.0) {
     float raysPerWeight = float(LPV_LANES) / all, offset = unitFloat(seed);
-    int first = clamp(int(ceil(before * raysPerWeight - offset)), 0, LPV_LANES),
-        end = clamp(int(ceil((before + found.weight) * raysPerWeight - offset)), 0, LPV_LANES);
-    for (int i = first; i < end; ++i) rays[i] = uvec2(1u + found.chosen[(i - first) & 3], lane);
+    int first = clampedInt(ceil(before * raysPerWeight - offset), 0, LPV_LANES),
+        end = clampedInt(ceil((before + found.weight) * raysPerWeight - offset), 0, LPV_LANES);
+    for (int i = first; i < LPV_LANES && i < end; ++i) rays[i] = uvec2(1u + found.chosen[(i - first) & 3], lane);
   }
   barrier();
   bool open = false;

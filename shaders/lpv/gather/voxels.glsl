@@ -1,4 +1,5 @@
 // Coarse surface voxels: one bit per voxel, bricks of 4x4x4 in two words (engine/lpv/surface_voxels.hpp).
+#include "lib/clamped_int.glsl"
 layout(binding = 6) uniform usamplerBuffer voxelBricks;
 uniform vec3 voxelMinimum;   // of voxel 0
 uniform float voxelSize;     // scene units
@@ -17,8 +18,8 @@ bool isBlocked(vec3 from, vec3 to, bool toBorder) {
   float t = 0.0, nudge = 1e-3 / length(direction);  // a thousandth of a voxel, to step into the next one
   bool wasFree = false, met = false;
   int most = 2 * (count.x + count.y + count.z);
-  for (int i = 0; i < most && t < end; ++i) {
-    ivec3 voxel = clamp(ivec3(floor(start + t * direction)), ivec3(0), count - 1);
+  for (int i = 0; i < most && t < end; ++i) {  // ends: most follows from uniforms
+    ivec3 voxel = clampedInt(floor(start + t * direction), ivec3(0), count - 1);
     ivec3 brick = voxel >> 2, within = voxel & 3;
     uvec2 bits = texelFetch(voxelBricks, (brick.z * voxelBrickCount.y + brick.y) * voxelBrickCount.x + brick.x).xy;
     bool empty = bits.x == 0u && bits.y == 0u;

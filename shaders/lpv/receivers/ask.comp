@@ -1,5 +1,6 @@
 // Lists what the lookup reads from each receiver for one point: one entry per receiver. One invocation.
 layout(local_size_x = 1) in;
+#include "lib/clamped_int.glsl"
 #include "lpv/receivers/lookup.glsl"
 #include "forward/asked_parts.glsl"
 layout(binding = 7) uniform usamplerBuffer lpvSlots;
@@ -33,13 +34,14 @@ void main() {
     vec3 place = receivedPlace(k, askedPosition) - 0.5;
     for (int i = 0; i < 24; ++i) {
       int axis = i >> 3, face = faceOf(axis, askedNormal[axis]);
-      ivec3 corner = ivec3(i & 1, i >> 1 & 1, i >> 2 & 1), cell = ivec3(floor(place)) + corner;
+      ivec3 corner = ivec3(i & 1, i >> 1 & 1, i >> 2 & 1),
+            cell = clampedInt(floor(place), ivec3(-2), ivec3(cells)) + corner;
       vec3 near = mix(1.0 - fract(place), fract(place), vec3(corner));
       float share = askedNormal[axis] * askedNormal[axis] * near.x * near.y * near.z * weights[k] / (there[k] * sum);
       if (!(share > 0.0) || any(lessThan(cell, ivec3(0))) || any(greaterThanEqual(cell, ivec3(cells)))) continue;
       vec4 held = texelFetch(lpvReceived, cell + ivec3(0, 0, (k * LPV_FACES + face) * cells), 0);
       uint slot = texelFetch(lpvSlots, slotOf(k, face, cell + receiving.firstCell[k].xyz)).x;
-      if (!(held.w > 0.0) || slot == 0u) continue;
+      if (!(held.w > 0.0) || slot == 0u || slot > receiving.capacity) continue;
       tellPart(AskedPart(share * receivedUnit() * held.rgb, share * held.w, receivers[slot - 1u].position,
                          0.0, ivec4(cell, k), vec4(0.0), vec4(0.0), vec4(0.0)));
     }

@@ -14,7 +14,7 @@ int faceOf(int axis, float component) { return 2 * axis + (component < 0.0 ? 1 :
 // cell: index counted from the origin.
 int slotOf(int cascade, int face, ivec3 cell) {
   int cells = lpv.shape.x;
-  ivec3 place = cell - cells * ivec3(floor(vec3(cell) / float(cells)));
+  ivec3 place = cell - cells * ivec3(floor(vec3(cell) / float(cells)));  // bounded: by the integer that is divided
   place -= cells * ivec3(greaterThanEqual(place, ivec3(cells)));
   place += cells * ivec3(lessThan(place, ivec3(0)));
   return ((((cascade * LPV_FACES + face) * cells) + place.z) * cells + place.y) * cells + place.x;

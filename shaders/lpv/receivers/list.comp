@@ -67,6 +67,7 @@ void main() {
   if (!fades && !lacksPaths) return;
   uint place = atomicAdd(work.waiting, 1u);
   if (place >= mostLit) return;
-  atomicMax(work.litGroupsX, place / uint(LPV_LANES / PATHS) + 1u);
+  uint group = place / uint(LPV_LANES / PATHS);
+  atomicMax(work.litGroups[3u * (group / uint(LPV_PART_GROUPS))], group % uint(LPV_PART_GROUPS) + 1u);
   lit[place] = index;
 }

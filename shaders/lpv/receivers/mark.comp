@@ -5,6 +5,7 @@
 // and corners.
 // First pass: the best key of each empty slot. Second pass, CLAIM: the winner creates the receiver.
 layout(local_size_x = 8, local_size_y = 8) in;
+#include "lib/clamped_int.glsl"
 #include "lpv/receivers/common.glsl"
 #include "lpv/receivers/work.glsl"
 layout(std430, binding = 5) restrict buffer LpvWork { LpvReceiverWork work; };
@@ -49,7 +50,7 @@ void main() {
     if (!(weight > 0.0)) continue;
     if (!isAround) left -= weight;
     vec3 inCells = (position - lpv.cascades[k].minimum) / lpv.cascades[k].cellSize;
-    ivec3 cell = ivec3(floor(inCells));
+    ivec3 cell = clampedInt(floor(inCells), ivec3(-1), ivec3(lpv.shape.x));
     if (any(lessThan(cell, ivec3(0))) || any(greaterThanEqual(cell, ivec3(lpv.shape.x)))) continue;
     float offCentre = length(inCells - vec3(cell) - 0.5);
     cell += receiving.firstCell[k].xyz;
@@ -59,7 +60,7 @@ void main() {
       int face = faceOf(axis, normal[axis]);
       int slot = slotOf(k, face, cell);
       uint holds = texelFetch(lpvSlots, slot).x;
-      uint score = uint(min((offCentre + 0.5 * (1.0 - lean)) * (511.0 / 1.5), 511.0));
+      uint score = uint(clampedInt((offCentre + 0.5 * (1.0 - lean)) * (511.0 / 1.5), 0, 511));
       uint key = score << 23u | name;
 #if CLAIM
       if (holds != 0u || texelFetch(lpvKeys, slot).x != key) continue;
@@ -72,7 +73,7 @@ void main() {
 #else
       if (holds == 0u)
         atomicMin(keys[slot], key);
-      else if (!isAround)
+      else if (!isAround && holds <= uint(seen.length()))
         seen[holds - 1u] = receiving.frame;
 #endif
     }

@@ -12,5 +12,5 @@ bool neighbourAt(ivec4 ofReceiver, int i, out uint receiver) {
   if (any(lessThan(inGrid, ivec3(0))) || any(greaterThanEqual(inGrid, ivec3(lpv.shape.x)))) return false;
   uint holds = texelFetch(lpvSlots, slotOf(cascade, ofReceiver.w % LPV_FACES, cell)).x;
   receiver = holds - 1u;
-  return holds != 0u;
+  return holds != 0u && holds <= receiving.capacity;
 }

@@ -30,6 +30,7 @@ layout(std430, binding = 0) restrict buffer LpvReceivers { LpvReceiver receivers
 layout(std430, binding = 5) readonly restrict buffer LpvWork { LpvReceiverWork work; };
 #include "lpv/receivers/surface.glsl"
 layout(std430, binding = 1) readonly restrict buffer LpvLit { uint lit[]; };
+uniform uint firstGroup;  // of a part of `lit`
 shared vec3 found[LPV_LANES];
 
 #if FROM_CELLS
@@ -100,7 +101,8 @@ vec3 followPath(Surface surface, uint triangle, PathNumbers numbers) {
   uint scatterings = 0u;
   bool arrives = true, ends = false;  // at `surface`; after the pending shadow ray
   bool last = false;                  // the next ray only collects light at its end and does not scatter
-  for (;;) {
+  // Each scattering casts a shadow ray and the path's own.
+  for (uint rays = 0u; rays < 2u * (receiving.mostSegments + 2u); ++rays) {
     if (arrives) {
       arrives = false;
       ++scatterings;
@@ -151,7 +153,7 @@ vec3 followPath(Surface surface, uint triangle, PathNumbers numbers) {
     Ray traced = ray;
     if (isShadow) traced = shadow.ray;
     BvhTraversal traversal = beginRay(traced, triangle);
-    while (!isDone(traversal)) advanceRay(traversal, isShadow);
+    for (int left = bvhNodeCount(); left > 0 && !isDone(traversal); --left) advanceRay(traversal, isShadow);
     if (isShadow) {
       if (traversal.hit.triangle == kNoHit) radiance += shadow.light;
       shadow.waits = false;
@@ -195,9 +197,9 @@ vec3 followPath(Surface surface, uint triangle, PathNumbers numbers) {
 }
 
 void main() {
-  uint lane = gl_LocalInvocationID.x, place = (gl_WorkGroupID.x * uint(LPV_LANES) + lane) / uint(PATHS);
+  uint lane = gl_LocalInvocationID.x, place = ((firstGroup + gl_WorkGroupID.x) * uint(LPV_LANES) + lane) / uint(PATHS);
   bool there = place < min(work.waiting, uint(lit.length()));
-  uint index = lit[there ? place : 0u];
+  uint index = there ? min(lit[place], uint(receivers.length()) - 1u) : 0u;
   LpvReceiver receiver = receivers[index];
   found[lane] = vec3(0.0);
   if (there) {
@@ -210,7 +212,7 @@ void main() {
   barrier();
   if (!there || lane % uint(PATHS) != 0u) return;
   vec3 sum = vec3(0.0);
-  for (uint i = lane; i < lane + uint(PATHS); ++i) sum += found[i];
+  for (uint i = 0u; i < uint(PATHS); ++i) sum += found[lane + i];
   uint paths = receiver.paths + uint(PATHS);
   receivers[index].irradiance = receiver.irradiance + (kPi * sum - float(PATHS) * receiver.irradiance) / float(paths);
   receivers[index].paths = paths;

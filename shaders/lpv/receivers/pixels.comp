@@ -37,8 +37,9 @@ void main() {
     receiver.third = hit.barycentrics.y;
     receiver.state = surface.front ? LPV_FRONT : 0u;
     uint place = atomicAdd(work.waiting, 1u);
-    atomicMax(work.litGroupsX, place / uint(LPV_LANES / PATHS) + 1u);
-    lit[place] = index;
+    uint group = place / uint(LPV_LANES / PATHS);
+    atomicMax(work.litGroups[3u * (group / uint(LPV_PART_GROUPS))], group % uint(LPV_PART_GROUPS) + 1u);
+    if (place < uint(lit.length())) lit[place] = index;
   }
   receivers[index] = receiver;
 }
