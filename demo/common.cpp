@@ -223,13 +223,9 @@ Camera chooseCamera(const Scene& scene, const std::string& text) {
 nlohmann::ordered_json stagesJson(const std::vector<gl::StageStatistics>& stages) {
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
   for (const auto& s : stages) {
-    json[s.name] = {{"median_ms", s.medianMs},
-                    {"p95_ms", s.p95Ms},
-                    {"count", s.count},
-                    {"query_median_ms", s.queryMedianMs},
-                    {"ran", s.ran},
-                    {"frames", s.frames},
-                    {"saved_ms", s.savedMs()}};
+    json[s.name] = {
+        {"median_ms", s.medianMs},      {"p95_ms", s.p95Ms}, {"count", s.count},   {"query_median_ms", s.queryMedianMs},
+        {"queries_refused", s.refused}, {"ran", s.ran},      {"frames", s.frames}, {"saved_ms", s.savedMs()}};
     if (!std::isnan(s.wallMedianMs)) json[s.name]["wall_median_ms"] = s.wallMedianMs;
   }
   return json;
@@ -272,14 +268,20 @@ std::string receiversLine(const LpvReceivers& receivers) {
 std::string stagesTable(const std::vector<gl::StageStatistics>& stages, const std::string& renderer) {
   std::string text = fmt::format("Stage times on {}\n{:<18}{:>12}{:>12}{:>8}{:>16}{:>16}{:>14}\n", renderer, "stage",
                                  "median ms", "95 % ms", "count", "query median ms", "ran in frames", "saved ms");
+  const auto time = [](double ms) { return std::isnan(ms) ? std::string("-") : fmt::format("{:.3f}", ms); };
   double total = 0.0, saved = 0.0;
+  std::string refused;
   for (const auto& s : stages) {
-    text += fmt::format("{:<18}{:>12.3f}{:>12.3f}{:>8}{:>16.3f}{:>16}{:>14.3f}\n", s.name, s.medianMs, s.p95Ms, s.count,
-                        s.queryMedianMs, fmt::format("{} of {}", s.ran, s.frames), s.savedMs());
+    text += fmt::format("{:<18}{:>12}{:>12}{:>8}{:>16}{:>16}{:>14.3f}\n", s.name, time(s.medianMs), time(s.p95Ms),
+                        s.count, time(s.queryMedianMs), fmt::format("{} of {}", s.ran, s.frames), s.savedMs());
     total += std::isnan(s.medianMs) ? 0.0 : s.medianMs - s.savedMs();
     saved += s.savedMs();
+    if (s.refused > 0) refused += fmt::format("{}{} ({})", refused.empty() ? "" : ", ", s.name, s.refused);
   }
-  return text + fmt::format("{:<18}{:>12.3f}{:>66.3f}\n", "a frame", total, saved);
+  text += fmt::format("{:<18}{:>12.3f}{:>66.3f}\n", "a frame", total, saved);
+  if (!refused.empty())
+    text += "Queries refused, since the driver's time exceeds the wall clock or never came: " + refused + "\n";
+  return text;
 }
 
 }  // namespace lucerna::demo

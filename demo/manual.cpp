@@ -1,5 +1,6 @@
 // lucerna manual: generates the manual page lucerna(1) in roff from the command line's own tree; man(7) documents the
 // requests.
+#include "base/error.hpp"
 #include "command_tree.hpp"
 
 #include <fmt/core.h>
@@ -130,6 +131,8 @@ std::string manual(Command program) {
   std::map<std::string, std::string> footers;  // printed once: text, and the command that has it
   for (const CommandEntry& command : commands) {
     if (!command.isLeaf()) continue;
+    // Every command has --help at least.
+    if (command.options.empty()) throw Error(ErrorKind::fault, fmt::format("lucerna {} has no options", command.path));
     text += ".SS \"lucerna " + escaped(command.path) + "\"\n" + escaped(command.description) + ".\n";
     for (const OptionEntry& positional : command.positionals) text += optionText(positional, true);
     for (const OptionEntry& option : command.options)

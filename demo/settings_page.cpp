@@ -4,6 +4,7 @@
 #include "settings/settings.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace lucerna::demo {
 

@@ -1,4 +1,5 @@
-# Sourced by demo/run, tests/run and tests/turn: installs missing Debian packages, and builds with a preset.
+# Sourced by demo/run, tests/run and tests/turn: installs missing Debian packages, and builds with a preset. Where there
+# is no apt-get, it names the packages that are missing.
 
 run_packages="g++ cmake ninja-build pkg-config libglew-dev libglfw3-dev libglm-dev libassimp-dev libdevil-dev
   libimgui-dev libegl-dev libgl-dev libegl1 libgl1-mesa-dri libopenexr-dev libfmt-dev libcli11-dev nlohmann-json3-dev"
@@ -55,10 +56,57 @@ apt_install() {
       done; }
 }
 
+# package_name COLUMN NAME: what docs/packages.md calls this Debian package on Fedora (column 4) or Arch (5): nothing, a
+# name, or several.
+package_name() {
+  awk -F'|' -v column="$1" -v name="$2" '
+    {
+      count = split($3, debian, /[` ]+/)
+      for (i = 1; i <= count; i++) if (debian[i] == name) {
+        listed = 1
+        count = split($column, parts, "`")
+        for (i = 2; i <= count; i += 2) print parts[i]
+        exit
+      }
+    }
+    END { if (!listed) print name }' docs/packages.md
+}
+
+# name_packages NAME... [-- OPTIONAL NAME...]: install_packages without apt-get. Names the missing packages and ends.
+name_packages() {
+  local column query install missing="" optional="" unknown="" name native needed=1
+  if command -v dnf >/dev/null 2>&1; then column=4 query="rpm -q" install="dnf install"
+  elif command -v pacman >/dev/null 2>&1; then column=5 query="pacman -Q" install="pacman -S"
+  else
+    echo "lucerna: no apt-get, dnf or pacman here; docs/packages.md lists what is needed" >&2
+    return 0
+  fi
+  for name in "$@"; do
+    [ "$name" != -- ] || { needed=""; continue; }
+    native="$(package_name "$column" "$name")"
+    [ -n "$native" ] || [ -z "$needed" ] || unknown="$unknown $name"
+    for native in $native; do
+      case "$missing$optional " in *" $native "*) continue ;; esac
+      if $query "$native" >/dev/null 2>&1; then :
+      elif [ "$needed" ]; then missing="$missing $native"
+      else optional="$optional $native"
+      fi
+    done
+  done
+  [ -z "$unknown" ] || echo "lucerna: needed too, under a name that is not known here:$unknown (docs/packages.md)" >&2
+  if [ -n "$missing" ]; then
+    echo "lucerna: packages are missing: sudo $install$missing" >&2
+    [ -z "$optional" ] || echo "lucerna: optional ones:$optional" >&2
+    exit 3
+  fi
+  [ -z "$optional" ] || echo "lucerna: continuing without$optional" >&2
+}
+
 # install_packages NAME... [-- OPTIONAL NAME...]: installs missing packages, all at once. Optional ones are skipped if
 # they do not exist, or cannot be installed without root.
 install_packages() {
   local missing="" optional="" name needed=1 become=""
+  command -v apt-get >/dev/null 2>&1 || { name_packages "$@"; return; }
   for name in "$@"; do
     if [ "$name" = -- ]; then needed=""
     elif is_installed "$name"; then :

@@ -3,7 +3,11 @@
 #include "base/error.hpp"
 
 #ifdef LUCERNA_EMBREE
+#if LUCERNA_EMBREE == 3
 #include <embree3/rtcore.h>
+#else
+#include <embree4/rtcore.h>
+#endif
 
 #include <algorithm>
 #include <atomic>
@@ -25,6 +29,27 @@ struct EmbreeRays::Handles {
     rtcReleaseDevice(device);
   }
 };
+
+namespace {
+
+// Embree 3 wants a context with each ray, Embree 4 takes arguments only where they are not the default.
+#if LUCERNA_EMBREE == 3
+void intersect(RTCScene scene, RTCRayHit& query) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(scene, &context, &query);
+}
+void occluded(RTCScene scene, RTCRay& ray) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(scene, &context, &ray);
+}
+#else
+void intersect(RTCScene scene, RTCRayHit& query) { rtcIntersect1(scene, &query, nullptr); }
+void occluded(RTCScene scene, RTCRay& ray) { rtcOccluded1(scene, &ray, nullptr); }
+#endif
+
+}  // namespace
 
 EmbreeRays::EmbreeRays(const Scene& scene, const glm::dvec3& origin) : handles_(std::make_unique<Handles>()) {
   handles_->device = rtcNewDevice(nullptr);
@@ -53,8 +78,6 @@ EmbreeRays::~EmbreeRays() = default;
 void EmbreeRays::trace(std::span<const PlainRay> rays, std::span<PlainHit> hits, bool anyHit) const {
   CHECK(rays.size() == hits.size(), "{} rays, {} hits", rays.size(), hits.size());
   const auto work = [&](std::size_t begin, std::size_t end) {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
     for (std::size_t i = begin; i < end; ++i) {
       const PlainRay& r = rays[i];
       RTCRayHit query{};
@@ -62,10 +85,10 @@ void EmbreeRays::trace(std::span<const PlainRay> rays, std::span<PlainHit> hits,
                    r.tMax,     ~0u,        0,          0};
       query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
       if (anyHit) {
-        rtcOccluded1(handles_->scene, &context, &query.ray);
+        occluded(handles_->scene, query.ray);
         hits[i].triangle = query.ray.tfar < 0.0f ? 0u : PlainHit::kNone;
       } else {
-        rtcIntersect1(handles_->scene, &context, &query);
+        intersect(handles_->scene, query);
         hits[i] = {query.ray.tfar,
                    query.hit.geomID == RTC_INVALID_GEOMETRY_ID ? PlainHit::kNone : query.hit.primID,
                    {query.hit.u, query.hit.v}};

@@ -1,4 +1,4 @@
-// Traces the same rays with Embree 3: a baseline for benchmarks and tests, never for the engine. Optional: see
+// Traces the same rays with Embree 3 or 4: a baseline for benchmarks and tests, never for the engine. Optional: see
 // isBuilt().
 #pragma once
 

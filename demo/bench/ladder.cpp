@@ -4,6 +4,7 @@
 #include "settings/deviations.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <sstream>

@@ -7,6 +7,7 @@
 #include "measure/heat_map.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 

@@ -4,6 +4,7 @@
 #include "labs/hand_in.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>

@@ -382,11 +382,11 @@ void showTimings(Ui& ui, WalkState& s) {
       const double reused =
           stage.frames > 0 ? 1.0 - static_cast<double>(stage.ran) / static_cast<double>(stage.frames) : 0.0;
       ImGui::ProgressBar(static_cast<float>(ms / longest), {6.0f * ImGui::GetFontSize(), 0.0f},
-                         fmt::format("{:.2f} ms", ms).c_str());
+                         std::isnan(stage.medianMs) ? "no time" : fmt::format("{:.2f} ms", ms).c_str());
       ImGui::SameLine();
       line(stage.name + (reused > 0.0 ? fmt::format(", reused {:.0f} %", 100.0 * reused) : ""));
-      explain(fmt::format("median {:.3f} ms, 95 % {:.3f} ms of {} samples; ran in {} of {} frames", stage.medianMs,
-                          stage.p95Ms, stage.count, stage.ran, stage.frames));
+      explain(fmt::format("median {:.3f} ms, 95 % {:.3f} ms of {} samples; ran in {} of {} frames; {} queries refused",
+                          stage.medianMs, stage.p95Ms, stage.count, stage.ran, stage.frames, stage.refused));
     }
   }
   if (button(ui, "begin again"))

@@ -103,7 +103,7 @@ void showSetting(Ui& ui, SideState& side, const RenderSettings& settings, const 
     const ImGuiStyle& style = ImGui::GetStyle();
     const float end =
         ImGui::GetItemRectMax().x + style.ItemSpacing.x + ImGui::CalcTextSize("reset").x + 2.0f * style.FramePadding.x;
-    if (end < ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x) ImGui::SameLine();
+    if (end < ImGui::GetCursorScreenPos().x + ImGui::GetContentRegionAvail().x) ImGui::SameLine();
     reset = ImGui::SmallButton("reset");
     ui.note(key + " reset");
   }

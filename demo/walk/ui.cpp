@@ -29,6 +29,63 @@ constexpr std::pair<ImGuiKey, int> kImguiKeys[] = {{ImGuiKey_Tab, key::kTab},
                                                    {ImGuiKey_Y, 'Y'},
                                                    {ImGuiKey_Z, 'Z'}};
 
+#if IMGUI_VERSION_NUM < 18700
+void mapKeys(ImGuiIO& io) {
+  for (const auto& [imguiKey, ours] : kImguiKeys) io.KeyMap[imguiKey] = ours;
+}
+
+void passInput(ImGuiIO& io, const HostInput& input, const glm::vec2& cursor) {
+  io.MousePos = {cursor.x, cursor.y};
+  for (int button = 0; button < 3; ++button) io.MouseDown[button] = input.buttons[static_cast<std::size_t>(button)];
+  io.MouseWheel += static_cast<float>(input.wheel.y);
+  io.MouseWheelH += static_cast<float>(input.wheel.x);
+  for (const KeyEvent& event : input.keys) {
+    io.KeysDown[event.key] = event.down;
+    io.KeyCtrl = event.control;
+    io.KeyShift = event.shift;
+    io.KeyAlt = event.alt;
+  }
+}
+#else
+// A frame takes all input since the last one, as HostInput does, instead of one click in each.
+void mapKeys(ImGuiIO& io) { io.ConfigInputTrickleEventQueue = false; }
+
+void passInput(ImGuiIO& io, const HostInput& input, const glm::vec2& cursor) {
+  io.AddMousePosEvent(cursor.x, cursor.y);
+  for (int button = 0; button < 3; ++button)
+    io.AddMouseButtonEvent(button, input.buttons[static_cast<std::size_t>(button)]);
+  io.AddMouseWheelEvent(static_cast<float>(input.wheel.x), static_cast<float>(input.wheel.y));
+  for (const KeyEvent& event : input.keys) {
+    io.AddKeyEvent(ImGuiKey_ModCtrl, event.control);
+    io.AddKeyEvent(ImGuiKey_ModShift, event.shift);
+    io.AddKeyEvent(ImGuiKey_ModAlt, event.alt);
+    for (const auto& [imguiKey, ours] : kImguiKeys)
+      if (ours == event.key) io.AddKeyEvent(imguiKey, event.down);
+  }
+}
+#endif
+
+/// The default font, as a texture. Each context has its own: one that two share must be updated by the program itself
+/// since 1.92.
+gl::Texture makeFont(ImGuiIO& io, float size) {
+  ImFontConfig font;
+  font.SizePixels = size;
+  io.Fonts->AddFontDefault(&font);
+  unsigned char* pixels = nullptr;
+  int width = 0, height = 0;
+  io.Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
+  gl::Sampling sampling;
+  sampling.minFilter = sampling.magFilter = gl::Filter::linear;
+  gl::Texture texture("font", gl::Format::rgba8, glm::ivec2(width, height), sampling);
+  texture.upload(gl::Texels::rgbaByte, pixels);
+  io.Fonts->ClearTexData();
+  return texture;
+}
+
+// A texture's name for ImGui: a pointer before 1.91.4, an integer since.
+ImTextureID nameOf(const gl::Texture& texture) { return (ImTextureID)(std::intptr_t)&texture; }
+const gl::Texture* textureOf(ImTextureID name) { return (const gl::Texture*)(std::intptr_t)name; }
+
 }  // namespace
 
 Ui::Ui(gl::ProgramLibrary& programs, Host& host, float scale) : host_(host), scale_(scale), overlay_(programs) {
@@ -36,7 +93,7 @@ Ui::Ui(gl::ProgramLibrary& programs, Host& host, float scale) : host_(host), sca
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = nullptr;  // do not write any file into the user's folders
   io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
-  for (const auto& [imguiKey, ours] : kImguiKeys) io.KeyMap[imguiKey] = ours;
+  mapKeys(io);
   io.ClipboardUserData = this;
   io.GetClipboardTextFn = [](void* self) -> const char* {
     Ui& ui = *static_cast<Ui*>(self);
@@ -53,22 +110,16 @@ Ui::Ui(gl::ProgramLibrary& programs, Host& host, float scale) : host_(host), sca
   style.Colors[ImGuiCol_WindowBg].w = 0.86f;
   style.Colors[ImGuiCol_PlotHistogram] = {0.58f, 0.42f, 0.08f, 1.0f};  // white numbers are drawn on it
   style.ScaleAllSizes(scale);
-  ImFontConfig font;
-  font.SizePixels = std::round(13.0f * scale);
-  io.Fonts->AddFontDefault(&font);
-  unsigned char* pixels = nullptr;
-  int width = 0, height = 0;
-  io.Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
-  gl::Sampling sampling;
-  sampling.minFilter = sampling.magFilter = gl::Filter::linear;
-  font_ = gl::Texture("font", gl::Format::rgba8, glm::ivec2(width, height), sampling);
-  font_.upload(gl::Texels::rgbaByte, pixels);
-  io.Fonts->SetTexID(&font_);
-  io.Fonts->ClearTexData();
-  note_ = ImGui::CreateContext(io.Fonts);
+  const float fontSize = std::round(13.0f * scale);
+  panelFont_ = makeFont(io, fontSize);
+  io.Fonts->SetTexID(nameOf(panelFont_));
+  note_ = ImGui::CreateContext();
   ImGui::SetCurrentContext(note_);
-  ImGui::GetIO().IniFilename = nullptr;
-  ImGui::GetIO().BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
+  ImGuiIO& noteIo = ImGui::GetIO();
+  noteIo.IniFilename = nullptr;
+  noteIo.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
+  noteFont_ = makeFont(noteIo, fontSize);
+  noteIo.Fonts->SetTexID(nameOf(noteFont_));
   ImGui::GetStyle() = style;
   ImGui::SetCurrentContext(panel_);
 }
@@ -90,17 +141,7 @@ void Ui::begin(const HostInput& input, glm::ivec2 size, double seconds) {
   ImGuiIO& io = ImGui::GetIO();
   io.DisplaySize = {static_cast<float>(size.x), static_cast<float>(size.y)};
   io.DeltaTime = static_cast<float>(std::clamp(seconds, 1e-4, 1.0));
-  io.MousePos = {static_cast<float>(input.cursor.x), static_cast<float>(input.cursor.y)};
-  if (!input.focused) io.MousePos = {-FLT_MAX, -FLT_MAX};
-  for (int button = 0; button < 3; ++button) io.MouseDown[button] = input.buttons[static_cast<std::size_t>(button)];
-  io.MouseWheel += static_cast<float>(input.wheel.y);
-  io.MouseWheelH += static_cast<float>(input.wheel.x);
-  for (const KeyEvent& event : input.keys) {
-    io.KeysDown[event.key] = event.down;
-    io.KeyCtrl = event.control;
-    io.KeyShift = event.shift;
-    io.KeyAlt = event.alt;
-  }
+  passInput(io, input, input.focused ? glm::vec2(input.cursor) : glm::vec2(-FLT_MAX));
   io.AddInputCharactersUTF8(input.text.c_str());
   places_.clear();
   held_ = input.buttons[0] || input.buttons[1] || input.buttons[2];
@@ -142,7 +183,7 @@ void Ui::end(const gl::Framebuffer& target) {
       const glm::ivec2 corner(static_cast<int>(command.ClipRect.x), static_cast<int>(command.ClipRect.y));
       const glm::ivec2 end(static_cast<int>(command.ClipRect.z), static_cast<int>(command.ClipRect.w));
       runs_.push_back({corner, end - corner, static_cast<std::uint32_t>(indices_.size()), command.ElemCount,
-                       static_cast<const gl::Texture*>(command.GetTexID())});
+                       textureOf(command.GetTexID())});
       for (unsigned k = 0; k < command.ElemCount; ++k)
         indices_.push_back(firstVertex + command.VtxOffset + list.IdxBuffer[static_cast<int>(command.IdxOffset + k)]);
     }

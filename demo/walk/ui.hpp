@@ -1,5 +1,6 @@
 // Dear ImGui on the engine's terms: input comes from the host's HostInput, triangles are drawn by gl::Overlay. Debian's
 // ImGui backend is not used: it opens libGL.so.1 itself and so bypasses EGL and OSMesa. The panel works on every host.
+// Compiles with Dear ImGui 1.86 (Debian 12) to 1.92.
 //
 // Controls are registered through the functions below by their labels, so that recorded input can find them by name
 // (walk/input_file.hpp) wherever they are.
@@ -40,7 +41,7 @@ class Ui {
   bool wantsMouse(const HostInput& input) const;
   bool wantsKeyboard() const { return ImGui::GetIO().WantTextInput; }
   float scale() const { return scale_; }
-  std::size_t gpuBytes() const { return overlay_.gpuBytes() + font_.bytes(); }
+  std::size_t gpuBytes() const { return overlay_.gpuBytes() + panelFont_.bytes() + noteFont_.bytes(); }
 
   // ---- controls by name. To be called right after the control.
   struct Place {
@@ -66,7 +67,7 @@ class Ui {
   float scale_;
   ImGuiContext *panel_ = nullptr, *note_ = nullptr;
   gl::Overlay overlay_;
-  gl::Texture font_;
+  gl::Texture panelFont_, noteFont_;
   std::string section_, wanted_;
   std::vector<std::array<glm::vec2, 2>> windows_;  ///< lower and upper corner
   bool held_ = false;  ///< a mouse button was held in the last frame

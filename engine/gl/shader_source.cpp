@@ -3,6 +3,8 @@
 #include "base/files.hpp"
 #include "gl/program.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cerrno>

@@ -134,16 +134,24 @@ Json checkedGltf(const fs::path& file, std::span<const std::uint8_t> bytes) {
   return root;
 }
 
-std::vector<std::uint8_t> withNumberedMaterials(const Json& root, std::span<const std::uint8_t> bytes) {
+std::vector<std::uint8_t> withNumbers(const Json& root, std::span<const std::uint8_t> bytes) {
   Json numbered = root;
-  Json& materials = numbered["materials"];
-  for (std::size_t i = 0; i < materials.size(); ++i) {
-    if (!materials[i].is_object()) continue;
-    const auto name = materials[i].find("name");
-    if (name != materials[i].end() && !name->is_string()) continue;  // Assimp rejects it
-    materials[i]["name"] =
-        fmt::format("{}#{}", i, name == materials[i].end() ? std::string() : name->get<std::string>());
-  }
+  const auto putNumber = [](Json& object, std::size_t number, const std::string& nameless) {
+    const auto name = object.find("name");
+    if (name != object.end() && !name->is_string()) return;  // Assimp rejects it
+    object["name"] = fmt::format("{}#{}", number, name == object.end() ? nameless : name->get<std::string>());
+  };
+  if (const auto materials = numbered.find("materials"); materials != numbered.end() && materials->is_array())
+    for (std::size_t i = 0; i < materials->size(); ++i)
+      if ((*materials)[i].is_object()) putNumber((*materials)[i], i, "");
+  if (const auto nodes = numbered.find("nodes"); nodes != numbered.end() && nodes->is_array())
+    for (std::size_t i = 0; i < nodes->size(); ++i) {
+      Json& node = (*nodes)[i];
+      if (!node.is_object()) continue;
+      const auto camera = node.find("camera");
+      if (camera != node.end() && camera->is_number_unsigned())
+        putNumber(node, camera->get<std::size_t>(), fmt::format("nodes_{}", i));
+    }
   std::string text = numbered.dump(-1, ' ', false, Json::error_handler_t::replace);
   const std::size_t oldLength = jsonText({}, bytes).size();
   if (oldLength == bytes.size()) return {text.begin(), text.end()};
@@ -160,11 +168,20 @@ std::vector<std::uint8_t> withNumberedMaterials(const Json& root, std::span<cons
   return result;
 }
 
-std::optional<std::size_t> numberOfMaterial(std::string_view name) {
+std::optional<std::size_t> numberOf(std::string_view name) {
   std::size_t number = 0;
   const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
   if (error != std::errc() || end == name.data() + name.size() || *end != '#') return std::nullopt;
   return number;
+}
+
+std::string_view withoutNumber(std::string_view name) {
+  return numberOf(name) ? name.substr(name.find('#') + 1) : name;
+}
+
+double gltfFieldOfView(const Json& root, std::size_t index) {
+  const Json& angle = root.value(Json::json_pointer(fmt::format("/cameras/{}/perspective/yfov", index)), Json());
+  return angle.is_number() ? angle.get<double>() : 0.0;
 }
 
 glm::dvec2 TextureTransform::apply(const glm::dvec2& uv) const {

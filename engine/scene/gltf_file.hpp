@@ -22,12 +22,17 @@ inline constexpr int kMostNodeDepth = 1000;
 /// than kMostNodeDepth, and if an accessor has more elements than its bytes can hold.
 Json checkedGltf(const std::filesystem::path& file, std::span<const std::uint8_t> bytes);
 
-/// The file with each material's number before its name, "3#paint": Assimp returns materials in order of first use.
-/// `root` is its JSON.
-std::vector<std::uint8_t> withNumberedMaterials(const Json& root, std::span<const std::uint8_t> bytes);
+/// A glTF 2 with each material's number before its name, "3#paint", since Assimp returns materials in order of first
+/// use; and with the number of its camera before the name of each node that has one. `root` is its JSON.
+std::vector<std::uint8_t> withNumbers(const Json& root, std::span<const std::uint8_t> bytes);
 
 /// The number before such a name; empty if there is none (Assimp's material for meshes without one).
-std::optional<std::size_t> numberOfMaterial(std::string_view name);
+std::optional<std::size_t> numberOf(std::string_view name);
+std::string_view withoutNumber(std::string_view name);
+
+/// The vertical field of view of camera `index` of a glTF 2, in radians: Assimp's number means something else in each
+/// of its versions. 0 if it is not a perspective camera.
+double gltfFieldOfView(const Json& root, std::size_t index);
 
 /// KHR_texture_transform: where a texture is looked up for texture coordinates (u, v), v = 0 being its top row.
 struct TextureTransform {

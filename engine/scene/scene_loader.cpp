@@ -100,15 +100,18 @@ std::string withForwardSlashes(std::string path) {
 
 /// File access for Assimp: replaces backslashes, serves the checked model from memory, and records missing material
 /// libraries (Assimp only logs them).
-class ModelFiles : public Assimp::DefaultIOSystem {
+class ModelFiles : public Assimp::IOSystem {
  public:
   ModelFiles(std::string model, std::span<const std::uint8_t> content) : model_(std::move(model)), content_(content) {}
 
-  bool Exists(const char* file) const override { return DefaultIOSystem::Exists(withForwardSlashes(file).c_str()); }
+  bool Exists(const char* file) const override { return disk_.Exists(withForwardSlashes(file).c_str()); }
+  char getOsSeparator() const override { return disk_.getOsSeparator(); }
+  bool ComparePaths(const char* one, const char* other) const override { return disk_.ComparePaths(one, other); }
+  void Close(Assimp::IOStream* stream) override { delete stream; }
   Assimp::IOStream* Open(const char* file, const char* mode = "rb") override {
     if (model_ == file) return new Assimp::MemoryIOStream(content_.data(), content_.size());
     const std::string path = withForwardSlashes(file);
-    Assimp::IOStream* stream = DefaultIOSystem::Open(path.c_str(), mode);
+    Assimp::IOStream* stream = disk_.Open(path.c_str(), mode);
     if (lowerExtension(path) == ".mtl") {
       if (stream) foundMaterials = true;
       else missingMaterials.push_back(path);
@@ -120,6 +123,7 @@ class ModelFiles : public Assimp::DefaultIOSystem {
   std::vector<std::string> missingMaterials;
 
  private:
+  Assimp::DefaultIOSystem disk_;  ///< final since Assimp 6
   std::string model_;
   std::span<const std::uint8_t> content_;
 };
@@ -606,23 +610,23 @@ glm::dmat4 worldFromNamedNode(const aiScene& source, const aiString& name) {
   return toGlm(world);
 }
 
-void appendCameras(Scene& scene, const aiScene& source) {
-  // Assimp 5.2 copies a glTF node's translation into its camera too, and gives yfov * aspect as horizontal angle.
-  const std::string extension = lowerExtension(scene.file);
-  const bool gltf = extension == ".gltf" || extension == ".glb";
+/// `gltf`: its JSON, if it is glTF.
+void appendCameras(Scene& scene, const aiScene& source, const Json& gltf) {
   for (unsigned i = 0; i < source.mNumCameras; ++i) {
     const aiCamera& given = *source.mCameras[i];
     const glm::dmat4 world = worldFromNamedNode(source, given.mName);
     Camera camera;
-    camera.name = given.mName.C_Str();
-    camera.position = glm::dvec3(world * glm::dvec4(gltf ? glm::dvec3(0.0) : toGlm(given.mPosition), 1.0));
+    camera.name = withoutNumber(given.mName.C_Str());
+    // Assimp 5.2 copies a glTF node's translation into its camera too.
+    const glm::dvec3 position = gltf.is_object() ? glm::dvec3(0.0) : toGlm(given.mPosition);
+    camera.position = glm::dvec3(world * glm::dvec4(position, 1.0));
     camera.direction = glm::dmat3(world) * toGlm(given.mLookAt);
     camera.up = glm::dmat3(world) * toGlm(given.mUp);
     const double horizontal = given.mHorizontalFOV;
     camera.verticalFov = horizontal;  // where no aspect is known
-    if (given.mAspect > 0.0f)
-      camera.verticalFov =
-          gltf ? horizontal / given.mAspect : 2.0 * std::atan(std::tan(0.5 * horizontal) / given.mAspect);
+    if (given.mAspect > 0.0f) camera.verticalFov = 2.0 * std::atan(std::tan(0.5 * horizontal) / given.mAspect);
+    if (const auto number = numberOf(given.mName.C_Str()); number && gltf.is_object())
+      camera.verticalFov = gltfFieldOfView(gltf, *number);
     const glm::dvec3 right = glm::cross(camera.direction, camera.up);
     const bool usable =
         isFinite(camera.position) && glm::length(right) > 0.0 && camera.verticalFov > 0.0 && camera.verticalFov < kPi;
@@ -662,7 +666,7 @@ void appendLights(Scene& scene, const aiScene& source) {
       const double outer = std::min(half * light.mAngleOuterCone, kLargestSpotAngle);
       if (half * light.mAngleOuterCone > kLargestSpotAngle)
         logWarning("{}: spot light '{}' is wider than 80 degrees from its axis; clamped to that", scene.file.string(),
-                   light.mName.C_Str());
+                   withoutNumber(light.mName.C_Str()));
       const double inner = std::clamp(half * light.mAngleInnerCone, 0.0, outer);
       scene.spots.push_back({position, glm::normalize(direction), intensity, inner, outer});
     } else {
@@ -729,8 +733,11 @@ Scene loadModel(const fs::path& file) {
   Json gltf;
   if (extension == ".gltf" || extension == ".glb") gltf = checkedGltf(file, content);
   if (extension == ".off") checkOff(file, content);
-  const bool isGltf2 = gltf.is_object() && gltf.contains("materials") && gltf.at("materials").is_array();
-  if (isGltf2) content = withNumberedMaterials(gltf, content);
+  const auto isArray = [&](const char* key) {
+    return gltf.is_object() && gltf.contains(key) && gltf.at(key).is_array();
+  };
+  const bool isGltf2 = isArray("materials");  // glTF 1 has objects
+  if (isGltf2 || isArray("nodes")) content = withNumbers(gltf, content);
 
   // Assimp reads the model; all file access goes through ModelFiles.
   const auto end = [&](Assimp::Importer* ended) {
@@ -787,7 +794,7 @@ Scene loadModel(const fs::path& file) {
       }
       const auto [known, isNew] = gltfMaterials.try_emplace(index);
       GltfMaterial& rest = known->second;
-      if (const auto number = numberOfMaterial(source->mMaterials[index]->GetName().C_Str()); isNew && number)
+      if (const auto number = numberOf(source->mMaterials[index]->GetName().C_Str()); isNew && number)
         rest = gltfMaterial(gltf, file, *number);
       const auto [tint, same] = vertexColour(mesh);
       const auto lacks = [&](std::string_view what) {
@@ -819,7 +826,7 @@ Scene loadModel(const fs::path& file) {
 
   // Lights, cameras, key frames.
   appendLights(scene, *source);
-  appendCameras(scene, *source);
+  appendCameras(scene, *source, gltf);
   if (const auto data = findDataFolder()) {
     const fs::path walk = *data / "keyFrames" / (scene.name + ".txt");
     if (fs::exists(walk)) setKeyFrames(scene, walk);

@@ -1,5 +1,5 @@
 // The command line as a contract: fields of --json, files written, and for every wrong input one clear line,
-// the right exit code and nothing half-written. Runs the built executable on OSMesa.
+// the right exit code and nothing half-written. Runs the built executable off-screen.
 #include "base/image.hpp"
 #include "support/subprocess.hpp"
 #include "support/temp_folder.hpp"

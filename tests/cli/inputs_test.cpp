@@ -1,6 +1,6 @@
 // What people hand to the program and what the machine refuses it: settings, settings files, numbers, standard output,
-// descriptors, leftovers. For each wrong input one clear line and the right exit code. Runs the built executable on
-// OSMesa.
+// descriptors, leftovers. For each wrong input one clear line and the right exit code. Runs the built executable
+// off-screen.
 #include "base/clock.hpp"
 #include "support/subprocess.hpp"
 #include "support/temp_folder.hpp"

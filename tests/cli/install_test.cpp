@@ -87,8 +87,8 @@ TEST_F(Installed, HoldsNoPathOfTheSourceTreeNorOfThePrefix) {
 TEST_F(Installed, ProgramRunsWithTheSourceTreeAway) {
   NEEDS_NAMESPACES();
   const RunResult result = runWithoutSources(
-      "moved/bin/lucerna render moved/share/lucerna/assets/cornell/cornell.json --technique direct --size 32x32 --host "
-      "osmesa -o direct.png");
+      "moved/bin/lucerna render moved/share/lucerna/assets/cornell/cornell.json --technique direct --size 32x32 -o "
+      "direct.png");
   EXPECT_EQ(result.exitCode, 0) << result.err;
   EXPECT_TRUE(fs::exists(path("direct.png")));
 }
@@ -103,13 +103,13 @@ TEST_F(Installed, ConsumerDrawsWhatTheProgramDraws) {
       " -DCMAKE_PREFIX_PATH=\"$PWD/moved\" && cmake --build consumer/build");
   ASSERT_EQ(built.exitCode, 0) << built.out << built.err;
   const std::string scene = "moved/share/lucerna/assets/cornell/cornell.json";
-  const RunResult consumer = runWithoutSources("consumer/build/consumer " + scene + " consumer.pfm osmesa");
+  const RunResult consumer = runWithoutSources("consumer/build/consumer " + scene + " consumer.pfm $LUCERNA_HOST");
   ASSERT_EQ(consumer.exitCode, 0) << consumer.err;
   EXPECT_TRUE(fs::exists(path("consumer.pfm")));
 
   const RunResult program = runWithoutSources("moved/bin/lucerna render " + scene +
                                               " --technique lpv --set lpv.transport=propagate --set lpv.cells=16 "
-                                              "--size 96x64 --host osmesa --quiet -o program.pfm --json program.json");
+                                              "--size 96x64 --quiet -o program.pfm --json program.json");
   ASSERT_EQ(program.exitCode, 0) << program.err;
   const auto mean = nlohmann::json::parse(std::ifstream(path("program.json"))).at("mean").get<std::vector<double>>();
   std::istringstream numbers(consumer.out);
@@ -119,7 +119,7 @@ TEST_F(Installed, ConsumerDrawsWhatTheProgramDraws) {
     EXPECT_GT(expected, 1e-3);
     EXPECT_NEAR(value, expected, 1e-5 * expected);
   }
-  const RunResult refused = runWithoutSources("consumer/build/consumer nowhere.obj out.pfm osmesa");
+  const RunResult refused = runWithoutSources("consumer/build/consumer nowhere.obj out.pfm $LUCERNA_HOST");
   EXPECT_EQ(refused.exitCode, 2);
   EXPECT_EQ(refused.err, "consumer: nowhere.obj: no such file\n");
 }

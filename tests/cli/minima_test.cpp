@@ -18,8 +18,8 @@ using lucerna::test::TempFolder;
 class Minima : public ::testing::Test {
  protected:
   RunResult render(const std::string& scene, const std::string& arguments, const std::string& size = "24x24") const {
-    return lucerna::test::run("LUCERNA_GL_MINIMA=1 '" LUCERNA_BINARY "' render '" + scene + "' --host osmesa --size " +
-                              size + " --quiet -o '" + picture().string() + "' " + arguments);
+    return lucerna::test::run("LUCERNA_GL_MINIMA=1 '" LUCERNA_BINARY "' render '" + scene + "' --size " + size +
+                              " --quiet -o '" + picture().string() + "' " + arguments);
   }
   void expectRendered(const std::string& arguments, const std::string& size = "24x24") const {
     const RunResult result = render(kCornell, arguments, size);

@@ -222,14 +222,65 @@ TEST(ManualPage, TellsEveryCommandAndItsOptions) {
   const std::string part = page.substr(begin, page.find(".SS", begin + 1) - begin);
   std::size_t options = 0;
   for (const std::string& line : linesOf(RUN_LUCERNA("radiosity solve --help").out)) {
-    if (!line.starts_with("  --")) continue;
-    std::string name = line.substr(2, line.find(' ', 2) - 2);
+    const auto start = line.find_first_not_of(' ');  // how far in, versions of CLI11 differ
+    if (start == 0 || start == std::string::npos || line.compare(start, 2, "--") != 0) continue;
+    std::string name = line.substr(start, line.find(' ', start) - start);
     if (name == "--host" || name == "--json" || name == "--quiet") continue;
     for (std::size_t at = 0; (at = name.find('-', at)) != std::string::npos; at += 2) name.replace(at, 1, "\\-");
     EXPECT_NE(part.find("\\fB" + name + "\\fR"), std::string::npos) << name;
     ++options;
   }
   EXPECT_GT(options, 10u);
+}
+
+/// A system without apt-get: nothing on its PATH but a few tools, and a package manager that lacks some packages.
+class SystemWithoutApt : public ::testing::Test {
+ protected:
+  SystemWithoutApt() {
+    for (const char* tool : {"awk", "dirname", "nproc"})
+      fs::create_symlink(linesOf(run(std::string("command -v ") + tool).out).at(0), folder_ / tool);
+  }
+  void addManager(const std::string& manager, const std::string& query, const std::string& missing) {
+    for (const std::string& name : {manager, query}) {
+      folder_.write(name, "#!/bin/sh\ncase ' " + missing + " ' in *\" $2 \"*) exit 1 ;; esac\n");
+      fs::permissions(folder_ / name, fs::perms::owner_all);
+    }
+  }
+  RunResult shell(const std::string& command) const {
+    return run("cd '" LUCERNA_SOURCE_DIR "' && PATH=" + inQuotes(folder_.path().string()) + " /bin/sh " + command);
+  }
+  TempFolder folder_;
+};
+
+TEST_F(SystemWithoutApt, FedoraIsToldWhatToInstall) {
+  addManager("dnf", "rpm", "glew-devel gnuplot gtest-devel");
+  const RunResult demo = shell("demo/run");
+  EXPECT_EQ(demo.exitCode, 3);
+  EXPECT_EQ(demo.err,
+            "lucerna: needed too, under a name that is not known here: libimgui-dev (docs/packages.md)\n"
+            "lucerna: packages are missing: sudo dnf install glew-devel\nlucerna: optional ones: gnuplot\n");
+  const RunResult tests = shell("tests/run");
+  EXPECT_EQ(tests.exitCode, 3);
+  EXPECT_NE(tests.err.find("sudo dnf install glew-devel gtest-devel\n"), std::string::npos) << tests.err;
+}
+
+TEST_F(SystemWithoutApt, ArchIsToldWhatToInstallAndBuildsWithoutOptionalPackages) {
+  const std::string install =
+      "-c '. demo/setup.sh; install_packages $run_packages -- $optional_run_packages && echo on'";
+  addManager("pacman", "pacman", "mesa devil");
+  const RunResult lacks = shell(install);
+  EXPECT_EQ(lacks.exitCode, 3);
+  EXPECT_EQ(lacks.err, "lucerna: packages are missing: sudo pacman -S devil mesa\n");
+  addManager("pacman", "pacman", "gnuplot");
+  const RunResult complete = shell(install);
+  EXPECT_EQ(complete.out, "on\n");
+  EXPECT_EQ(complete.err, "lucerna: continuing without gnuplot\n");
+}
+
+TEST_F(SystemWithoutApt, OthersArePointedToTheList) {
+  const RunResult result = shell("-c '. demo/setup.sh; install_packages $run_packages && echo on'");
+  EXPECT_EQ(result.out, "on\n");
+  EXPECT_EQ(result.err, "lucerna: no apt-get, dnf or pacman here; docs/packages.md lists what is needed\n");
 }
 
 }  // namespace

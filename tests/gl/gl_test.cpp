@@ -15,12 +15,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <chrono>
+#include <cmath>
 #include <cstddef>
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
+#include <thread>
 #include <type_traits>
 #include <utility>
 
@@ -813,11 +814,86 @@ TEST_F(GlTimeQuery, NeverMorePendingThanTheRingAndEverySampleIsAccountedFor) {
     const TimeQuery::Scope stage(timer, "fill");
     filled(fill());
   }
-  const std::size_t fetched = timer.querySamples("fill").size() + 1;  // and the warm-up
-  const std::size_t pending = kFrames - timer.dropped() - fetched;
-  EXPECT_LE(pending, 6u);
+  const auto fetched = [&] {
+    return timer.querySamples("fill").size() + timer.statistics()[0].refused + 1;
+  };  // warm-up
+  EXPECT_LE(kFrames - timer.dropped() - fetched(), 6u);
   timer.drain();
-  EXPECT_EQ(timer.querySamples("fill").size() + 1 + timer.dropped(), static_cast<std::size_t>(kFrames));
+  EXPECT_EQ(fetched() + timer.dropped(), static_cast<std::size_t>(kFrames));
+}
+
+/// A driver that answers time queries with `milliseconds`, or never if that is negative.
+class DriverThatAnswers {
+ public:
+  explicit DriverThatAnswers(double milliseconds) {
+    answer_ = milliseconds;
+    glGetQueryObjectui64v = [](GLuint, GLenum, GLuint64* result) { *result = static_cast<GLuint64>(1e6 * answer_); };
+    glGetQueryObjectiv = [](GLuint, GLenum, GLint* result) { *result = answer_ >= 0.0; };
+  }
+  ~DriverThatAnswers() {
+    glGetQueryObjectui64v = value_;
+    glGetQueryObjectiv = number_;
+  }
+
+ private:
+  inline static double answer_ = 0.0;
+  PFNGLGETQUERYOBJECTUI64VPROC value_ = glGetQueryObjectui64v;
+  PFNGLGETQUERYOBJECTIVPROC number_ = glGetQueryObjectiv;
+};
+
+TEST_F(GlTimeQuery, RefusesWhatTheWallClockContradicts) {
+  for (const bool finish : {true, false}) {
+    TimeQuery timer(finish);
+    const auto stages = [&](int count, double answer) {
+      const DriverThatAnswers driver(answer);
+      for (int i = 0; i < count; ++i) {
+        const TimeQuery::Scope stage(timer, "fill");
+        filled(fill());
+      }
+      timer.drain();
+    };
+    stages(3, 12241132.0);
+    EXPECT_EQ(timer.statistics()[0].refused, 2u);  // and the warm-up
+    EXPECT_TRUE(timer.querySamples("fill").empty());
+    EXPECT_TRUE(std::isnan(timer.statistics()[0].queryMedianMs));
+    EXPECT_EQ(std::isnan(timer.statistics()[0].medianMs), !finish);
+    EXPECT_EQ(timer.statistics()[0].savedMs(), 0.0);
+    stages(2, 0.0);
+    EXPECT_EQ(timer.statistics()[0].refused, 2u);
+    EXPECT_EQ(timer.querySamples("fill"), (std::vector<double>{0.0, 0.0}));
+    timer.reset();
+    EXPECT_EQ(timer.statistics()[0].refused, 0u);
+  }
+  // A stage that is finished took no longer than until then, however late its answer is asked for.
+  TimeQuery timer(true);
+  const DriverThatAnswers driver(2000.0);
+  for (int i = 0; i < 2; ++i) {
+    const TimeQuery::Scope stage(timer, "fill");
+    filled(fill());
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(2100));
+  timer.drain();
+  EXPECT_EQ(timer.statistics()[0].refused, 1u);
+}
+
+TEST_F(GlTimeQuery, DoesNotWaitForAnAnswerThatNeverComes) {
+  TimeQuery timer(false, 50.0);
+  {
+    const DriverThatAnswers driver(-1.0);
+    for (int i = 0; i < 8; ++i) {
+      const TimeQuery::Scope stage(timer, "fill");
+      filled(fill());
+    }
+    timer.drain();
+  }
+  EXPECT_EQ(timer.statistics()[0].refused + timer.dropped(), 7u);  // and the warm-up
+  EXPECT_EQ(timer.dropped(), 2u);
+  for (int i = 0; i < 2; ++i) {  // queries that a driver answers again
+    const TimeQuery::Scope stage(timer, "fill");
+    filled(fill());
+  }
+  timer.drain();
+  EXPECT_EQ(timer.querySamples("fill").size(), 2u);
 }
 
 class GlTimeQueryDeathTest : public GlTimeQuery {};

@@ -1,4 +1,4 @@
-// The path tracer in participating media against published tables and exact solutions, on OSMesa.
+// The path tracer in participating media against published tables and exact solutions.
 //
 // The tables are those of van de Hulst, Giovanelli and Chandrasekhar and of an adding-doubling solver that agrees with
 // them to the digits shown. A figure passes within 3.5 of its own standard errors (over all cases here a false alarm in

@@ -279,7 +279,7 @@ struct OriginalFolder : TempFolder {
   }
 };
 
-const Material& materialNamed(const Scene& scene, const std::string& name) {
+const Material& materialNamed(const Scene& scene, std::string_view name) {
   for (const Material& material : scene.materials)
     if (material.name == name) return material;
   throwBadInput("no material {}", name);

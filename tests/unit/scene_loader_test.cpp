@@ -10,6 +10,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <map>
 
 namespace lucerna {
 namespace {
@@ -490,6 +491,25 @@ TEST(SceneLoader, GltfCamerasAndSunAreRead) {
   ASSERT_TRUE(scene.sun);
   EXPECT_LT(glm::distance(scene.sun->direction, glm::dvec3(0, -1, 0)), 1e-6);  // -z turned about x by -90 degrees
   EXPECT_LT(glm::distance(scene.sun->irradiance, glm::vec3(4.0f, 2.0f, 1.0f)), 1e-6f);
+}
+
+TEST(SceneLoader, GltfCamerasOfOneNameKeepTheirFieldOfView) {
+  const TempFolder folder;
+  const Scene scene = loadGltf(folder,
+                               R"({"children":[1,2,3,4,5]},{"mesh":0},{"name":"eye","camera":2,"translation":[1,2,3]},
+         {"name":"eye","camera":0,"translation":[4,5,6]},{"camera":3,"translation":[0,0,7]},
+         {"name":"plan","camera":1})",
+                               "{}",
+                               R"(,"cameras":[{"type":"perspective","perspective":{"yfov":1.1,"znear":0.1}},
+         {"type":"orthographic","orthographic":{"xmag":1,"ymag":1,"znear":0.1,"zfar":9}},
+         {"name":"lens","type":"perspective","perspective":{"yfov":0.7,"aspectRatio":1.5,"znear":0.1}},
+         {"type":"perspective","perspective":{"yfov":0.2,"aspectRatio":0.5,"znear":0.1}}])");
+  std::map<std::string, std::map<double, double>> fieldByHeight;  // name, then height above the floor
+  for (const Camera& camera : scene.cameras) fieldByHeight[camera.name][camera.position.y] = camera.verticalFov;
+  ASSERT_EQ(scene.cameras.size(), 3u);  // an orthographic one has no field of view
+  EXPECT_NEAR(fieldByHeight.at("eye").at(2.0), 0.7, 1e-12);
+  EXPECT_NEAR(fieldByHeight.at("eye").at(5.0), 1.1, 1e-12);
+  EXPECT_NEAR(fieldByHeight.at("nodes_4").at(0.0), 0.2, 1e-12);
 }
 
 }  // namespace
