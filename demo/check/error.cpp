@@ -37,7 +37,15 @@ Finding measure(const UnitInput& input) {
   options.references = (std::filesystem::path(input.out) / "error" / "references").string();
   options.budget = 0.3 * input.seconds;
   options.frames = 3;
-  options.small = options.quiet = true;
+  options.quiet = true;
+  // The path tracer's error over time, and one picture by each other technique.
+  options.techniques = {"path"};
+  options.rungs = {"direct",
+                   "rsm",
+                   "lpv",
+                   "lpv lpv.transport=propagate",
+                   "lpv lpv.transport=gather",
+                   "radiosity radiosity.edge=0.1"};
   at("measuring errors");
   const auto result = bench::runErrorBench(session.context, session.programs, loadScene(options.scene), options,
                                            std::string(nameOf(session.host->kind())));
@@ -49,6 +57,6 @@ Finding measure(const UnitInput& input) {
 
 }  // namespace
 
-std::vector<Unit> errorUnits() { return {{"error", "cornell", 90.0, measure}}; }
+std::vector<Unit> errorUnits() { return {{"error", "cornell", 90.0, measure, {}, true}}; }
 
 }  // namespace lucerna::demo::check

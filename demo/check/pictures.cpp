@@ -7,7 +7,8 @@
 //   centres, a whole row of the block changes: a tenth of the block's range.
 // - Linear filters have weights of 8 bits: 1/256 of what is filtered. Levels of detail are approximated.
 // - Over the whole picture edges are few and change either way: the mean keeps to 1/200, the blocks to 2 % rms.
-// The path tracer has no rasteriser and no filters: its blocks agree to the rounding of 32-bit floats, 1e-6 rms.
+// The path tracer has no rasteriser and no filters: its blocks agree to the rounding of 32-bit floats, 1e-6 rms, but
+// for a few in which rounding sends a path elsewhere.
 #include "check/check.hpp"
 
 #include "base/clock.hpp"
@@ -38,6 +39,7 @@ constexpr double kNothing = 1e-3;  ///< of the picture's mean: blocks that are n
 constexpr double kMean = 1.0 / 200.0, kBlocks = 0.02;
 constexpr double kRank = 0.01, kLevel = 1.0 / 128.0;  ///< of quantiles: share of the pixels, share of the value
 constexpr double kPaths = 1e-6;
+constexpr std::size_t kStray = 3;  ///< blocks in which a path went elsewhere
 
 struct Summary {
   struct Block {
@@ -123,6 +125,7 @@ Stored storedOf(const std::string& file, const std::string& name) {
 struct Comparison {
   double mean = 0.0;  ///< largest difference of a channel's mean, over the mean
   double blocks = 0.0;  ///< root mean square difference of blocks, over the mean
+  double rest = 0.0;  ///< the same without the kStray blocks that differ most
   double worst = 0.0;  ///< largest difference of a block, over its bound for raster techniques
   glm::ivec2 place{0};  ///< of that block's middle, in pixels from the top left
   double ranks = 0.0;  ///< largest share of pixels on the wrong side of a quantile
@@ -130,7 +133,8 @@ struct Comparison {
 
   bool isRight(bool isPath) const {
     if (notFinite > 0) return false;
-    return isPath ? blocks <= kPaths : mean <= kMean && blocks <= kBlocks && worst <= 1.0 && ranks <= kRank;
+    if (isPath) return rest <= kPaths && worst <= 1.0;
+    return mean <= kMean && blocks <= kBlocks && worst <= 1.0 && ranks <= kRank;
   }
 };
 
@@ -139,19 +143,28 @@ Comparison compare(const Summary& measured, const Stored& stored) {
   result.notFinite = measured.notFinite;
   const double level = (stored.mean.x + stored.mean.y + stored.mean.z) / 3.0;
   for (int c = 0; c < 3; ++c) result.mean = std::max(result.mean, std::abs(measured.mean[c] - stored.mean[c]) / level);
+  std::vector<double> squares;  // of each block, summed over the channels
   for (std::size_t i = 0; i < stored.blocks.size(); ++i) {
+    squares.push_back(0.0);
     const Summary::Block &a = measured.blocks[i], &b = stored.blocks[i];
     const double bound = kEdge * b.range + kFilter * (b.mean.x + b.mean.y + b.mean.z) / 3.0 + kNothing * level;
     for (int c = 0; c < 3; ++c) {
       const double difference = std::abs(a.mean[c] - b.mean[c]);
-      result.blocks += difference * difference;
+      squares.back() += difference * difference;
       if (difference / bound <= result.worst) continue;
       result.worst = difference / bound;
       const int columns = kSize.x / kSide, at = static_cast<int>(i);
       result.place = kSide * glm::ivec2(at % columns, at / columns) + kSide / 2;
     }
   }
-  result.blocks = std::sqrt(result.blocks / (3.0 * static_cast<double>(stored.blocks.size()))) / level;
+  std::sort(squares.begin(), squares.end());
+  const auto rms = [&](std::size_t count) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < count; ++i) sum += squares[i];
+    return std::sqrt(sum / (3.0 * static_cast<double>(count))) / level;
+  };
+  result.blocks = rms(squares.size());
+  result.rest = rms(squares.size() - kStray);
   // The share p of the pixels lies below quantile p: of many equal values, any share of them.
   const auto shareBelow = [&](double value) {
     const auto below = std::lower_bound(measured.values.begin(), measured.values.end(), value);
@@ -190,12 +203,17 @@ Finding comparePicture(const Asked& asked, const UnitInput& input) {
   finding.right = c.isRight(asked.isPath());
   finding.text = c.notFinite > 0 ? fmt::format("{} pixels are not finite", c.notFinite)
                                  : fmt::format("mean {:.1e}, blocks {:.1e} rms off", c.mean, c.blocks);
-  if (!finding.right && c.notFinite == 0 && !asked.isPath())
+  if (!finding.right && c.notFinite == 0)
     finding.text += fmt::format("; worst at {},{}: {:.3g} of its bound; {:.1f} % of pixels displaced", c.place.x,
                                 c.place.y, c.worst, 100.0 * c.ranks);
   finding.text += fmt::format(" ({:.2f} s)", seconds);
-  finding.figures = {{"mean", c.mean},    {"blocks_rms", c.blocks},    {"worst_of_bound", c.worst},
-                     {"ranks", c.ranks},  {"not_finite", c.notFinite}, {"place", {c.place.x, c.place.y}},
+  finding.figures = {{"mean", c.mean},
+                     {"blocks_rms", c.blocks},
+                     {"rest_rms", c.rest},
+                     {"worst_of_bound", c.worst},
+                     {"ranks", c.ranks},
+                     {"not_finite", c.notFinite},
+                     {"place", {c.place.x, c.place.y}},
                      {"seconds", seconds}};
   return finding;
 }

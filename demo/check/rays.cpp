@@ -33,7 +33,7 @@ Finding measure(const std::string& name, const UnitInput& input) {
 std::vector<Unit> rayUnits() {
   std::vector<Unit> units;
   for (const char* name : {"atrium", "cornell"})
-    units.push_back({"rays", name, 30.0, [name](const UnitInput& input) { return measure(name, input); }});
+    units.push_back({"rays", name, 30.0, [name](const UnitInput& input) { return measure(name, input); }, {}, true});
   return units;
 }
 

@@ -51,7 +51,7 @@ std::string programsLine(const std::vector<const Row*>& rows) {
 
 std::string line(std::string_view status, std::string_view name, std::string_view text) {
   std::string whole = fmt::format("  {:<8} {:<28} {}", status, name, text);
-  if (whole.size() > 150) whole = whole.substr(0, 147) + "...";
+  if (whole.size() > 180) whole = whole.substr(0, 177) + "...";
   return whole + "\n";
 }
 
