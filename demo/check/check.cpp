@@ -208,8 +208,9 @@ class Check {
       return row;
     }
     for (const Row& earlier : state_.rows)
-      if (earlier.key() == unit.after && isFault(earlier.status) && earlier.status != Status::wrong) {
-        row.text = fmt::format("{} {}", unit.after, nameOf(earlier.status));
+      if ((earlier.key() == unit.after || earlier.part == "context") && isFault(earlier.status) &&
+          earlier.status != Status::wrong) {
+        row.text = fmt::format("{} {}", earlier.key(), nameOf(earlier.status));
         return row;
       }
     // At most half of the part's rest: the other half is for a second look, or for the units that follow.
@@ -356,7 +357,12 @@ int runCheck(CheckOptions options) {
 
 void at(const std::string& what) { fmt::print(stderr, "at {}\n", what); }
 
-Session::Session(const UnitInput& input) : host((at("creating a context"), input.common.makeHost(false))) {}
+Session::Session(const UnitInput& input) : host(makeHost(input)) {}
+
+std::unique_ptr<Host> Session::makeHost(const UnitInput& input) {
+  at("creating a context");
+  return input.common.makeHost(false);
+}
 
 }  // namespace check
 

@@ -35,7 +35,7 @@ struct Unit {
   std::string part, name;
   double seconds;  ///< limit
   std::function<Finding(const UnitInput&)> run;
-  std::string after = {};  ///< key of a unit: if it did not end, this one is not run
+  std::string after = {};  ///< key of a unit: if it did not end, this one is not run. All need the context
   bool isLarge = false;  ///< a software renderer may need minutes for one pass of it: no sign of a hang there
 
   std::string key() const { return part + "/" + name; }
@@ -51,6 +51,9 @@ struct Session {
   gl::Context context;
   gl::ProgramLibrary programs;
   gl::BuildWatch watch{[](const std::string& name) { at("compiling " + name + ", or after it"); }};
+
+ private:
+  static std::unique_ptr<Host> makeHost(const UnitInput& input);
 };
 
 /// A picture of the parts programs, pictures and stages.

@@ -13,6 +13,7 @@
 
 #include <array>
 #include <bit>
+#include <numeric>
 
 namespace lucerna::demo::check {
 
@@ -227,33 +228,35 @@ Finding atomics(const UnitInput& input) {
   return ended(std::move(finding), "atomic counts are exact");
 }
 
-/// A thousand steps, each reading what the step before wrote.
+/// Steps, each of which reads what the step before wrote: words move round, and count.
 Finding feedback(const UnitInput& input) {
   Session session(input);
   Words tools(session.programs);
   Finding finding;
-  constexpr std::uint32_t kSteps = 1000, kSide = 16, kCount = kSide * kSide * kSide;
-  // Storage blocks.
+  constexpr std::uint32_t kSteps = 1024, kSide = 16, kCount = kSide * kSide * kSide;
+  std::vector<std::uint32_t> numbers(kCount);
+  std::iota(numbers.begin(), numbers.end(), 0u);
+  // Storage blocks: once round all words.
   const gl::Program& step = session.programs.loadCompute("check step words", "check/step_words.comp");
   at("steps of storage blocks");
-  std::array<gl::Buffer, 2> buffers{words("even", kCount), words("odd", kCount)};
+  std::array<gl::Buffer, 2> buffers{gl::Buffer("even", 4 * kSteps, numbers.data(), gl::Usage::dynamicCopy),
+                                    words("odd", kSteps)};
   for (std::uint32_t i = 0; i < kSteps; ++i) {
     step.use();
-    step.set("count", kCount);
+    step.set("count", kSteps);
     buffers[i % 2].bindStorage(0);
     buffers[(i + 1) % 2].bindStorage(1);
-    dispatch("step", kCount, Barrier::storage);
+    dispatch("step", kSteps, Barrier::storage);
   }
-  tools.count(buffers[kSteps % 2], kSteps, 0, kCount);
+  tools.count(buffers[0], kSteps, 1, kSteps);
   add(finding, "storage blocks", tools.takeWrong());
-  // Images, read as textures.
+  // Images, read as textures: 64 times round each row.
   const gl::Program& texelStep = session.programs.loadCompute("check step texels", "check/step_texels.comp");
   at("steps of images");
   std::array<gl::Texture, 2> volumes;
   for (gl::Texture& volume : volumes) {
     volume = gl::Texture("volume", gl::Format::r32ui, glm::ivec3(kSide));
-    const std::array<const gl::Texture*, 1> one{&volume};
-    gl::clearToZero(one, session.context.capabilities().clearTexture);
+    volume.upload(gl::Texels::redInt, numbers.data());
   }
   for (std::uint32_t i = 0; i < kSteps; ++i) {
     texelStep.use();
@@ -262,7 +265,7 @@ Finding feedback(const UnitInput& input) {
     const gl::ComputePass pass("step", Barrier::textureFetch | Barrier::image);
     pass.dispatch(glm::ivec3(kSide), glm::ivec3(4));
   }
-  tools.count(volumes[kSteps % 2], kSteps, 0, kCount);
+  tools.count(volumes[0], kSteps, 1, kCount);
   add(finding, "images", tools.takeWrong());
   return ended(std::move(finding), "every step sees the one before");
 }

@@ -145,8 +145,9 @@ TEST_F(Check, AHangNamesItsPass) {
 }
 
 TEST_F(Check, WithoutOpenGlItEndsWithThree) {
-  const RunResult result = check("--only context", "LUCERNA_CHECK_FAULT=context/limits=exit");
+  const RunResult result = check("--only probes/timers", "LUCERNA_CHECK_FAULT=context/limits=exit");
   EXPECT_EQ(result.exitCode, 3) << result.err;
+  expectRow("probes", "timers", "not run", "context/limits failed");
 }
 
 // Killed, even without a chance to say so, it goes on after the units that had ended; the one that ran is not run
@@ -154,10 +155,12 @@ TEST_F(Check, WithoutOpenGlItEndsWithThree) {
 TEST_F(Check, ResumesAfterAnInterruption) {
   const std::string options = "--only probes/timers,probes/arithmetic,probes/texels";
   const std::string hang = "LUCERNA_CHECK_FAULT=probes/arithmetic=hang";
+  // Signals the check once that unit runs.
   const auto stopped = [&](const char* signal) {
-    return run(fmt::format("{} timeout --preserve-status --signal={} 6 '" LUCERNA_BINARY
-                           "' check --quiet --out '{}' {}",
-                           hang, signal, out().string(), options));
+    return run(fmt::format("{0} '" LUCERNA_BINARY "' check --quiet --out '{1}' {2} & check=$!\n"
+                           "until grep -qs '\"running\":\"probes/arithmetic\"' '{1}/state.json'; do sleep 0.1; done\n"
+                           "kill -{3} $check; wait $check",
+                           hang, out().string(), options, signal));
   };
   const RunResult interrupted = stopped("INT");
   EXPECT_EQ(interrupted.exitCode, 130) << interrupted.err;
@@ -166,13 +169,14 @@ TEST_F(Check, ResumesAfterAnInterruption) {
   const auto state = nlohmann::json::parse(readFileText(out() / "state.json"));
   ASSERT_EQ(state.at("rows").size(), 3u) << "context, texels and timers";
   EXPECT_EQ(state.at("running"), "");
-  stopped("KILL");
+  EXPECT_EQ(stopped("KILL").exitCode, 137);
   EXPECT_EQ(nlohmann::json::parse(readFileText(out() / "state.json")).at("running"), "probes/arithmetic");
   const RunResult rest = check(options);
   EXPECT_EQ(rest.exitCode, 1) << rest.err;
   expectRow("probes", "timers", "right", "queries");
   expectRow("probes", "texels", "right", "texels");
   expectRow("probes", "arithmetic", "crashed", "ended while this ran");
+  EXPECT_EQ(report().at("rows").size(), 4u);
   EXPECT_EQ(row("probes", "timers").at("seconds"), state.at("rows").at(2).at("seconds")) << "not run again";
   EXPECT_EQ(check(options).exitCode, 0) << "a finished check begins anew";
 }
