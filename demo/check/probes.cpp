@@ -228,34 +228,34 @@ Finding atomics(const UnitInput& input) {
   return ended(std::move(finding), "atomic counts are exact");
 }
 
-/// Steps, each of which reads what the step before wrote: words move round, and count.
+/// Steps, each of which reads what the step before wrote: words count, and move half way round.
 Finding feedback(const UnitInput& input) {
   Session session(input);
   Words tools(session.programs);
   Finding finding;
-  constexpr std::uint32_t kSteps = 1024, kSide = 16, kCount = kSide * kSide * kSide;
+  constexpr std::uint32_t kSteps = 1024, kCount = 2 * kSteps;
   std::vector<std::uint32_t> numbers(kCount);
   std::iota(numbers.begin(), numbers.end(), 0u);
-  // Storage blocks: once round all words.
+  // Storage blocks.
   const gl::Program& step = session.programs.loadCompute("check step words", "check/step_words.comp");
   at("steps of storage blocks");
-  std::array<gl::Buffer, 2> buffers{gl::Buffer("even", 4 * kSteps, numbers.data(), gl::Usage::dynamicCopy),
-                                    words("odd", kSteps)};
+  std::array<gl::Buffer, 2> buffers{gl::Buffer("even", 4 * kCount, numbers.data(), gl::Usage::dynamicCopy),
+                                    words("odd", kCount)};
   for (std::uint32_t i = 0; i < kSteps; ++i) {
     step.use();
-    step.set("count", kSteps);
+    step.set("count", kCount);
     buffers[i % 2].bindStorage(0);
     buffers[(i + 1) % 2].bindStorage(1);
-    dispatch("step", kSteps, Barrier::storage);
+    dispatch("step", kCount, Barrier::storage);
   }
-  tools.count(buffers[0], kSteps, 1, kSteps);
+  tools.count(buffers[0], kCount, 1, kSteps);
   add(finding, "storage blocks", tools.takeWrong());
-  // Images, read as textures: 64 times round each row.
+  // Images, read as textures.
   const gl::Program& texelStep = session.programs.loadCompute("check step texels", "check/step_texels.comp");
   at("steps of images");
   std::array<gl::Texture, 2> volumes;
   for (gl::Texture& volume : volumes) {
-    volume = gl::Texture("volume", gl::Format::r32ui, glm::ivec3(kSide));
+    volume = gl::Texture("volume", gl::Format::r32ui, glm::ivec3(kCount, 1, 1));
     volume.upload(gl::Texels::redInt, numbers.data());
   }
   for (std::uint32_t i = 0; i < kSteps; ++i) {
@@ -263,9 +263,9 @@ Finding feedback(const UnitInput& input) {
     volumes[i % 2].bind(0);
     volumes[(i + 1) % 2].bindImage(0, gl::Access::write);
     const gl::ComputePass pass("step", Barrier::textureFetch | Barrier::image);
-    pass.dispatch(glm::ivec3(kSide), glm::ivec3(4));
+    pass.dispatch({kCount, 1, 1}, {kGroup, 1, 1});
   }
-  tools.count(volumes[0], kSteps, 1, kCount);
+  tools.count(volumes[0], kCount, 1, kSteps);
   add(finding, "images", tools.takeWrong());
   return ended(std::move(finding), "every step sees the one before");
 }

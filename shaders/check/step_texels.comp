@@ -1,5 +1,5 @@
-// The same from a volume's texels into the image of another.
-layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
+// The same from the texels of a row into the image of another.
+layout(local_size_x = 64) in;
 layout(binding = 0) uniform usampler3D before;
 layout(r32ui, binding = 0) writeonly uniform uimage3D after;
 
