@@ -28,7 +28,7 @@ std::string bestOf(const std::vector<bench::ErrorRow>& rows) {
   return text;
 }
 
-Finding measure(const UnitInput& input) {
+Finding measureErrors(const UnitInput& input) {
   Session session(input);
   bench::ErrorBenchOptions options;
   options.scene = bench::asset("cornell/cornell.json");
@@ -57,6 +57,6 @@ Finding measure(const UnitInput& input) {
 
 }  // namespace
 
-std::vector<Unit> errorUnits() { return {{"error", "cornell", 90.0, measure, {}, true}}; }
+std::vector<Unit> errorUnits() { return {{"error", "cornell", 90.0, measureErrors, {}, true}}; }
 
 }  // namespace lucerna::demo::check

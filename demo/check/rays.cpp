@@ -10,7 +10,7 @@ namespace lucerna::demo::check {
 
 namespace {
 
-Finding measure(const std::string& name, const UnitInput& input) {
+Finding traceRays(const std::string& name, const UnitInput& input) {
   Session session(input);
   at("loading " + name);
   const Scene scene = loadScene(bench::asset(fmt::format("{0}/{0}.json", name)));
@@ -33,7 +33,7 @@ Finding measure(const std::string& name, const UnitInput& input) {
 std::vector<Unit> rayUnits() {
   std::vector<Unit> units;
   for (const char* name : {"atrium", "cornell"})
-    units.push_back({"rays", name, 30.0, [name](const UnitInput& input) { return measure(name, input); }, {}, true});
+    units.push_back({"rays", name, 30.0, [name](const UnitInput& input) { return traceRays(name, input); }, {}, true});
   return units;
 }
 

@@ -20,7 +20,7 @@ namespace {
 constexpr int kFrames = 60;
 
 /// After a warm-up, up to kFrames frames in the time there is, at least one.
-Finding measure(const Asked& asked, glm::ivec2 size, const UnitInput& input) {
+Finding measureFrames(const Asked& asked, glm::ivec2 size, const UnitInput& input) {
   const auto start = Clock::now();
   Session session(input);
   at("loading " + asked.scene);
@@ -88,7 +88,7 @@ std::vector<Unit> stageUnits() {
   for (const glm::ivec2& size : {glm::ivec2(1920, 1080), glm::ivec2(1280, 720)})
     for (const Asked& asked : walks()) {
       Unit unit{"stages", fmt::format("{}-{}x{}", asked.name, size.x, size.y), 20.0,
-                [&asked, size](const UnitInput& input) { return measure(asked, size, input); }};
+                [&asked, size](const UnitInput& input) { return measureFrames(asked, size, input); }};
       unit.isLarge = true;
       for (const Asked& picture : askedPictures())
         if (picture.name == asked.name) unit.after = "pictures/" + picture.name;
