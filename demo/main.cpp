@@ -1,4 +1,5 @@
 // lucerna: one executable, one subcommand per file.
+#include "check/command.hpp"
 #include "cluster.hpp"
 #include "command_tree.hpp"
 #include "commands.hpp"
@@ -20,6 +21,8 @@ int main(int argc, char** argv) {
                lucerna::demo::addCluster);
   commands.add("radiosity", "Radiosity by hemicubes: generate a model, solve it, show it", lucerna::demo::addRadiosity);
   commands.add("info", "Host, driver, limits, extensions; a scene's counts and needs", lucerna::demo::addInfo);
+  commands.add("check", "How this machine's GPU and driver do: right pictures, hangs, times; a page for a bug report",
+               lucerna::demo::addCheck);
   commands.add("media", "Participating media: the catalogue; a scene JSON drafted from an MTL",
                lucerna::demo::addMedia);
   commands.add("bench",

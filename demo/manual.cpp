@@ -92,6 +92,9 @@ const char* kEnvironment[][2] = {
     {"LUCERNA_DUMP_PROGRAMS",
      "A folder for the sources of all shader programs and their driver requirements, for validators and other "
      "compilers."},
+    {"LUCERNA_FINISH_PASSES",
+     "1: before every pass the program waits for the GPU and writes \"pass NAME\" to standard error; the last name is "
+     "that of a pass that does not end."},
     {"LUCERNA_GL_MINIMA", "1: the driver's limits are treated as the minima that OpenGL 4.3 guarantees, for testing."},
     {"LUCERNA_VERBOSE", "If not empty: more messages on standard error."},
     {"DISPLAY, WAYLAND_DISPLAY", "If one of them is set, walk opens a window."},
@@ -99,7 +102,7 @@ const char* kEnvironment[][2] = {
 
 const char* kExitCodes[][2] = {
     {"0", "Success."},
-    {"1", "An internal error; of bench stability: a row failed."},
+    {"1", "An internal error; of bench stability: a row failed; of check: something is wrong."},
     {"2", "Invalid input: a file, an option or a value."},
     {"3", "Something is missing on this machine: a driver, memory, a package, the data."},
     {"130", "Interrupted by Ctrl-C; finished work is kept."},

@@ -4,12 +4,26 @@
 #include "gl/limits.hpp"
 
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
 
 namespace lucerna::gl {
 
 namespace {
+
 std::string g_lastPass = "none";
+
+/// LUCERNA_FINISH_PASSES=1: before each group the program waits for the GPU, then writes "pass NAME" to standard error.
+/// The last such line names the work that does not end.
+bool finishesPasses() {
+  static const bool asked = [] {
+    const char* value = std::getenv("LUCERNA_FINISH_PASSES");
+    return value && *value && *value != '0';
+  }();
+  return asked;
 }
+
+}  // namespace
 
 const std::string& lastPass() { return g_lastPass; }
 
@@ -21,6 +35,10 @@ void pushDebugGroup(const std::string& name) {
         glGetIntegerv(GL_MAX_DEBUG_MESSAGE_LENGTH, &length);  // counts the terminating zero
         return length;
       }();
+  if (finishesPasses()) {
+    glFinish();
+    std::fprintf(stderr, "pass %s\n", name.c_str());
+  }
   glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, std::min(static_cast<GLint>(name.size()), most - 1), name.c_str());
 }
 

@@ -6,6 +6,7 @@
 // standard deviation over the root of a quarter of the receivers bounds the error of a picture's mean where the picture
 // is of one value; kSignificant of these are allowed.
 #include "base/angles.hpp"
+#include "base/data.hpp"
 #include "base/error.hpp"
 #include "lpv/bounce_points.hpp"
 #include "lpv/emission_points.hpp"
@@ -820,7 +821,7 @@ class LpvReceiversAgainstPaths : public LpvReceiversGl {
 };
 
 TEST_F(LpvReceiversAgainstPaths, CornellBox) {
-  const Scene scene = loadScene(LUCERNA_SOURCE_DIR "/assets/cornell/cornell.json");
+  const Scene scene = loadScene((dataFolder() / "assets/cornell/cornell.json").string());
   const Camera camera = scene.cameras.front();
   struct Row {
     int bounces;
@@ -852,7 +853,7 @@ TEST_F(LpvReceiversAgainstPaths, CornellBox) {
 
 // Bounces, cells and the map's texels: more of them are never worse, by more than the reference's noise.
 TEST_F(LpvReceiversAgainstPaths, MoreIsBetterWhereLightIsGathered) {
-  const Scene scene = loadScene(LUCERNA_SOURCE_DIR "/assets/cornell/cornell.json");
+  const Scene scene = loadScene((dataFolder() / "assets/cornell/cornell.json").string());
   const Camera camera = scene.cameras.front();
   const Reference& reference = cornellIndirect(scene);
   const auto error = [&](int bounces, int cells, int map, int points) {
