@@ -62,7 +62,8 @@ Arriving pointLight(int i, vec3 position, vec3 normal, vec3 meshNormal) {
   float distance2 = dot(away, away);
   Arriving result = Arriving(vec3(0.0), away * inversesqrt(max(distance2, kTouching)), 0.0);
   result.cosine = dot(normal, result.toLight);
-  // All lanes look up the map, lit or not: GLSL has no lookup in a cube's shadow map without derivatives. Depth is measured along the face's axis, that of the largest component.
+  // All lanes look up the map, lit or not: GLSL has no lookup in a cube's shadow map without derivatives.
+  // Depth is measured along the face's axis, that of the largest component.
   vec3 size = abs(away);
   float texel = lights.points[i].shadowTexel * max(size.x, max(size.y, size.z));
   vec3 fromLight = meshNormal * (kNormalOffset * texel) - away;
