@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 
@@ -51,9 +52,9 @@ void BarrierLedger::forget(Resource resource) {
 
 void BarrierLedger::overwritten(Resource resource) { state(resource).written.open = false; }
 
-void BarrierLedger::require(const Event& event, const Access& access, GLuint program, const std::string& label,
+void BarrierLedger::require(const Event& event, const Access& access, std::uint64_t run, const std::string& label,
                             const char* hazard, const std::string& command) {
-  if (!event.open || (access.unordered && program != 0 && event.unorderedWithin == program)) return;
+  if (!event.open || (run != 0 && event.unorderedWithin == run)) return;
   const std::string* site = event.covers[indexOf(access.bit)];
   if (!site)
     report(fmt::format("{}: '{}' was {} by {}; then {} accesses it as {} without {}", hazard, label,
@@ -62,13 +63,13 @@ void BarrierLedger::require(const Event& event, const Access& access, GLuint pro
   else if (site != &kSeveral) ++barriers_[{*site, access.bit}].needed;
 }
 
-void BarrierLedger::access(const std::string& command, GLuint program, const std::vector<Access>& accesses) {
+void BarrierLedger::access(const std::string& command, std::uint64_t run, const std::vector<Access>& accesses) {
   // An API write that follows shader writes waits for the barrier bit of its own kind; API reads too. A shader write
   // waits for every earlier access.
   for (const Access& a : accesses) {
     const State& s = state(a.resource);
-    require(s.written, a, program, s.label, a.reads ? "RAW" : "WAW", command);
-    if (a.writes && a.byShader) require(s.accessed, a, program, s.label, "WAR", command);
+    require(s.written, a, run, s.label, a.reads ? "RAW" : "WAW", command);
+    if (a.writes && a.byShader) require(s.accessed, a, run, s.label, "WAR", command);
   }
   for (std::size_t i = 0; i < accesses.size(); ++i)
     for (std::size_t j = i + 1; j < accesses.size(); ++j) {
@@ -82,10 +83,13 @@ void BarrierLedger::access(const std::string& command, GLuint program, const std
                          state(a.resource).label, a.how, b.how));
     }
   const auto opened = [&](const Access& a) {
-    return Event{true, fmt::format("{} as {}", command, a.how), a.unordered ? program : 0,
+    const bool unordered = std::any_of(accesses.begin(), accesses.end(), [&](const Access& b) {
+      return b.resource == a.resource && b.unordered;
+    });
+    return Event{true, fmt::format("{} as {}", command, a.how), unordered ? run : 0,
                  std::vector<const std::string*>(kBits, nullptr)};
   };
-  if (program == 0) return;  // calls of the API end in order
+  if (run == 0) return;  // calls of the API end in order
   for (const Access& a : accesses) {
     state(a.resource).accessed = opened(a);
     open_.insert(a.resource);

@@ -18,7 +18,7 @@
 // Exceptions are declared in the shader, with the reason; NAME is the storage block or image:
 //   // unordered NAME: each dispatch writes the rows of its own chunk
 //   // aliased NAME: an invocation reads its own cell before it writes it
-// unordered: runs of the program need no barrier among themselves. aliased: the resource may be bound a second time in
+// unordered: runs of the program within one pass need no barrier among themselves. aliased: the resource may be bound a second time in
 // the same run.
 //
 // A barrier of all kinds (GL_ALL_BARRIER_BITS) is a workaround for a driver and covers nothing here.
@@ -26,6 +26,7 @@
 
 #include "host/api.hpp"
 
+#include <cstdint>
 #include <map>
 #include <set>
 #include <string>
@@ -54,8 +55,9 @@ class BarrierLedger {
   void forget(Resource resource);
   /// All of the resource was overwritten by the API: earlier shader writes are gone.
   void overwritten(Resource resource);
-  /// Accesses of one command, at the same time. program: 0 for API calls.
-  void access(const std::string& command, GLuint program, const std::vector<Access>& accesses);
+  /// Accesses of one command, at the same time. run: 0 for API calls, else one number per program and pass, within which
+  /// `unordered` holds.
+  void access(const std::string& command, std::uint64_t run, const std::vector<Access>& accesses);
   /// A barrier; site: the pass that issues it.
   void barrier(GLbitfield bits, const std::string& site);
   void report(std::string finding);
@@ -80,7 +82,7 @@ class BarrierLedger {
   struct Event {
     bool open = false;  ///< there was such an access
     std::string by;
-    GLuint unorderedWithin = 0;  ///< program
+    std::uint64_t unorderedWithin = 0;  ///< run
     std::vector<const std::string*> covers;  ///< per bit; null: none
   };
   struct State {
@@ -88,7 +90,7 @@ class BarrierLedger {
     Event written, accessed;  ///< by a shader; any access since that write
   };
   State& state(Resource resource);
-  void require(const Event& event, const Access& access, GLuint program, const std::string& label, const char* hazard,
+  void require(const Event& event, const Access& access, std::uint64_t run, const std::string& label, const char* hazard,
                const std::string& command);
   void cover(Event& event, GLbitfield bits, const std::string* site);
 
@@ -109,6 +111,8 @@ void checkBarriers();
 bool barriersCheckedByDefault();
 /// The ledger of the current context; null unless barriers are checked.
 BarrierLedger* barrierLedger();
+/// Names the barrier that comes next, which is none of the current pass.
+void nameNextBarrier(const std::string& site);
 /// Appends a line per pass and bit to the file LUCERNA_BARRIERS, if set: pass, bit, times issued, times needed, with
 /// tabs between. tests/barriers lists those never needed.
 void writeBarrierUses();

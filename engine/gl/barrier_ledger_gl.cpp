@@ -54,13 +54,23 @@ struct Bindings {
   std::map<GLuint, GLuint> elements;
   std::map<GLuint, std::string> shaders;
   std::map<GLuint, ProgramUses> programs;
-  std::vector<std::string> groups;
+  struct Group {
+    std::string name;
+    std::uint64_t serial;
+  };
+  std::vector<Group> groups;
+  std::uint64_t groupCount = 0;
 };
 
 std::unique_ptr<BarrierLedger> g_ledger;
 Bindings g_bound;
 
-std::string site() { return g_bound.groups.empty() ? "between passes" : g_bound.groups.back(); }
+std::string g_nextSite;
+
+std::string site() {
+  if (!g_nextSite.empty()) return std::exchange(g_nextSite, {});
+  return g_bound.groups.empty() ? "between passes" : g_bound.groups.back().name;
+}
 
 GLuint bound(GLenum target) { return g_bound.buffers[target]; }
 GLuint boundTexture(GLenum target) { return g_bound.textures[{g_bound.activeUnit, target}]; }
@@ -213,7 +223,8 @@ void run(bool draws, bool withElements, GLuint indirect) {
   }
   if (indirect != 0)
     accesses.push_back({{Kind::buffer, indirect}, GL_COMMAND_BARRIER_BIT, true, false, false, "group counts"});
-  g_ledger->access(command, g_bound.program, accesses);
+  const std::uint64_t pass = g_bound.groups.empty() ? 0 : g_bound.groups.back().serial;
+  g_ledger->access(command, pass << 32 | g_bound.program, accesses);
 }
 
 void api(const char* call, Resource resource, GLbitfield bit, bool writes) {
@@ -293,6 +304,7 @@ HOOK(glShaderSource, (GLuint id, GLsizei n, const GLchar* const* texts, const GL
   for (GLsizei i = 0; i < n; ++i)
     g_bound.shaders[id] += lengths ? std::string(texts[i], static_cast<std::size_t>(lengths[i])) : texts[i];
 })
+HOOK(glDeleteShader, (GLuint id), (id), { g_bound.shaders.erase(id); })
 HOOK(glAttachShader, (GLuint program, GLuint id), (program, id), {
   g_bound.programs[program].text += g_bound.shaders[id];
 })
@@ -329,7 +341,8 @@ HOOK(glVertexAttribPointer,
        g_bound.attributes[g_bound.vertexArray].insert(bound(GL_ARRAY_BUFFER));
      })
 HOOK(glPushDebugGroup, (GLenum source, GLuint id, GLsizei length, const GLchar* text), (source, id, length, text), {
-  g_bound.groups.push_back(length < 0 ? std::string(text) : std::string(text, static_cast<std::size_t>(length)));
+  g_bound.groups.push_back({length < 0 ? std::string(text) : std::string(text, static_cast<std::size_t>(length)),
+                            ++g_bound.groupCount});
 })
 HOOK(glPopDebugGroup, (), (), {
   if (!g_bound.groups.empty()) g_bound.groups.pop_back();
@@ -337,8 +350,9 @@ HOOK(glPopDebugGroup, (), (), {
 
 // Barriers
 HOOK(glMemoryBarrier, (GLbitfield bits), (bits), {
-  bits = g_ledger->issued(bits, site());
-  g_ledger->barrier(bits, site());
+  const std::string by = site();
+  bits = g_ledger->issued(bits, by);
+  g_ledger->barrier(bits, by);
   if (bits == 0) return;
 })
 
@@ -447,6 +461,10 @@ bool barriersCheckedByDefault() {
 #else
   return !value || std::strcmp(value, "0") != 0;
 #endif
+}
+
+void nameNextBarrier(const std::string& site) {
+  if (g_ledger) g_nextSite = site;
 }
 
 void writeBarrierUses() {

@@ -1,6 +1,7 @@
 #include "gl/objects.hpp"
 
 #include "base/error.hpp"
+#include "gl/barrier_ledger.hpp"
 #include "gl/context.hpp"
 #include "gl/limits.hpp"
 #include "gl/wait.hpp"
@@ -13,6 +14,8 @@ namespace lucerna::gl {
 namespace {
 
 constexpr GLuint kEditUnit = 79;  // the last of the 80 combined units that 4.3 guarantees is 79; editing binds there
+
+const std::string kBetweenPasses = "an object, before the API uses it";
 
 struct Transfer {
   Format stored;
@@ -123,7 +126,9 @@ void Buffer::bindStorage(GLuint index) const {
 }
 
 void Buffer::settle(Barrier barrier) const {
-  if (shadersMayWrite_) memoryBarrier(barrier);
+  if (!shadersMayWrite_) return;
+  nameNextBarrier(kBetweenPasses);
+  memoryBarrier(barrier);
 }
 
 void Buffer::copyTo(Buffer& target, std::size_t bytes) const {
@@ -274,7 +279,9 @@ void Texture::bindImage(GLuint unit, Access access, int level) const {
 }
 
 void Texture::settle(Barrier barrier) const {
-  if (shadersMayWrite_) memoryBarrier(barrier);
+  if (!shadersMayWrite_) return;
+  nameNextBarrier(kBetweenPasses);
+  memoryBarrier(barrier);
 }
 
 std::vector<glm::vec4> Texture::readRgba(int level) const {

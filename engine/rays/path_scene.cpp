@@ -228,6 +228,7 @@ void PathScene::bind() const {
   materials_.bindStorage(kMaterialsBinding);
   if (hasLights()) lights_.bindStorage(kLightsBinding);
   if (atlas_) atlas_->bind(kAtlasUnit);
+  else if (values_) values_->bind(kAtlasUnit);  // declared with any texture; no material reads it
   if (values_) values_->bind(kValuesUnit);
   if (environmentPicture_) environmentPicture_->bind(kEnvironmentUnit);
   if (environmentTable_) environmentTable_->bind(kEnvironmentTableUnit);

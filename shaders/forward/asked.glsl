@@ -3,6 +3,7 @@
 // whose writes are not.
 #include "shared/asked.h"
 layout(early_fragment_tests) in;
+// unordered Asked: of all draws only the visible fragment of the asked pixel writes
 layout(std430, binding = ASKED_BINDING) writeonly buffer Asked { vec4 asked[]; };
 uniform ivec2 askedPixel;  // from the picture's lower left corner
 bool isVisible = true;     // false: cut out

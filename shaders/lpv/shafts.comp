@@ -17,6 +17,7 @@
 #include "forward/sun_shadow.glsl"
 #endif
 layout(local_size_x = 8, local_size_y = 8) in;
+// unordered radiance: each dispatch writes its own pixels
 #if FULL_FLOAT
 layout(rgba32f, binding = 0) uniform image2D radiance;
 #else

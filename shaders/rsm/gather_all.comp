@@ -2,8 +2,10 @@
 #include "rsm/gather.glsl"
 #include "forward/visible.glsl"
 #include "rsm/work.glsl"
+// unordered Work: atomic sums commute
 layout(std430, binding = 1) buffer Work { GatherWork work; };
 layout(local_size_x = 8, local_size_y = 8) in;
+// unordered irradianceImage: each dispatch writes its own pixels
 layout(rgba32f, binding = 0) uniform image2D irradianceImage;
 uniform ivec2 firstPixel;  // of a part of the picture
 shared uint groupSurfaces;

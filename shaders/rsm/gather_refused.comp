@@ -5,6 +5,7 @@
 #include "rsm/work.glsl"
 layout(std430, binding = 1) readonly buffer Work { GatherWork work; };
 layout(local_size_x = WORK_GROUP) in;
+// unordered irradianceImage: each dispatch writes its own pixels
 layout(rgba32f, binding = 0) uniform image2D irradianceImage;
 layout(binding = 5) uniform usampler2D refusedPixels;
 uniform ivec2 listPart;  // of a submission: from, to

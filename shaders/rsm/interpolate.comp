@@ -3,9 +3,12 @@
 // other pixel is appended to the list for the full gather, those of a group at once.
 #include "rsm/fit.glsl"
 #include "rsm/work.glsl"
+// unordered Work: atomic sums commute
 layout(std430, binding = 1) buffer Work { GatherWork work; };
 layout(local_size_x = 8, local_size_y = 8) in;
+// unordered irradianceImage: each dispatch writes its own pixels
 layout(rgba32f, binding = 0) writeonly uniform image2D irradianceImage;  // w: 0 no surface, 1 interpolated, 2 gathered
+// unordered refusedPixels: each dispatch appends, at places that an atomic gives it
 layout(r32ui, binding = 1) writeonly uniform uimage2D refusedPixels;  // x | y << 16, row by row
 layout(binding = 5) uniform sampler2D lowIrradiance;
 uniform ivec2 firstPixel;  // of a part of the picture

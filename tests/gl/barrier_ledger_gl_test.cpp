@@ -150,7 +150,7 @@ TEST_F(BarrierLedgerOnGl, EachBarrierOfTheEngineIsMissed) {
     frames(c);
     ASSERT_EQ(context().takeErrors(), std::vector<std::string>{});
     int tried = 0;
-    for (const auto& [barrier, use] : ledger.barriers()) {
+    for (const auto& [barrier, use] : std::map(ledger.barriers())) {
       const auto [site, bit] = barrier;
       const auto old = before.find(barrier);
       if (use.needed == (old == before.end() ? 0 : old->second.needed)) continue;

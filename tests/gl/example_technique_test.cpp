@@ -79,7 +79,7 @@ TEST_F(ExampleTechnique, DimsByTheDistanceToTheSurface) {
   radiance.upload(gl::Texels::rgbaFloat, light.data());
   depth.upload(gl::Texels::redFloat, depths.data());
 
-  gl::ProgramLibrary examples(std::string(LUCERNA_SOURCE_DIR) + "/tests/gl/example_technique");
+  gl::ProgramLibrary examples(std::filesystem::path(LUCERNA_SOURCE_DIR) / "tests/gl/example_technique");
   gl::TimeQuery timer(false);
   const glm::dvec3 coefficient(0.1, 0.2, 0.4);
   Absorption absorption(examples, glm::ivec2(kSize), {glm::vec3(coefficient)});

@@ -25,7 +25,7 @@ std::vector<std::string> after(const std::vector<Access>& accesses, GLbitfield b
   for (std::size_t i = 0; i < accesses.size(); ++i) {
     if (i > 0 && barrier != 0) ledger.barrier(barrier, "pass");
     const bool api = accesses[i].bit == GL_BUFFER_UPDATE_BARRIER_BIT;
-    ledger.access("command " + std::to_string(i), api ? 0 : static_cast<GLuint>(i + 1), {accesses[i]});
+    ledger.access("command " + std::to_string(i), api ? 0u : i + 1, {accesses[i]});
   }
   return ledger.takeFindings();
 }

@@ -20,6 +20,7 @@ layout(std140, binding = BLOCK_RECEIVER_PATHS) uniform PathBlock { PathConstants
 #include "rays/environment.glsl"
 #include "lpv/receivers/common.glsl"
 #include "lpv/receivers/surface.glsl"
+// unordered LpvReceivers: each dispatch changes the receivers of its own part of the list
 layout(std430, binding = 0) restrict buffer LpvReceivers { LpvReceiver receivers[]; };
 layout(std430, binding = 1) readonly restrict buffer LpvLit { uint lit[]; };
 uniform uint last;              // 1: after this dispatch receivers have all their light
@@ -41,7 +42,9 @@ layout(binding = 8) uniform usamplerBuffer bounceSlots;  // per face and cell: n
 layout(binding = 13) uniform samplerBuffer bouncePlaces;  // of points; w: bits of the next layer's number + 1
 const float kApart = 0.25;  // cells along the normal, at most, from a surface to its point
 #if LINKS
+// unordered LpvLinks: each dispatch writes those of its own points
 layout(std430, binding = 6) writeonly restrict buffer LpvLinks { uint links[]; };
+// unordered LpvBouncePlaces: likewise
 // aliased LpvBouncePlaces: with `probes` an invocation changes its own place and reads no other; without, none writes
 layout(std430, binding = 7) restrict buffer LpvBouncePlaces { vec4 places[]; };
 #else

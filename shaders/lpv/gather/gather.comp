@@ -44,6 +44,7 @@ const float kPi = 3.14159265358979;
 #endif
 #include "lpv/gather/tree.glsl"
 layout(binding = 7) uniform usamplerBuffer treeNodes;
+// unordered LpvReceivers: each dispatch changes the receivers of its own part of the list
 layout(std430, binding = 0) restrict buffer LpvReceivers { LpvReceiver receivers[]; };
 layout(std430, binding = 1) readonly restrict buffer LpvLit { uint lit[]; };
 uniform uint last;         // 1: after this dispatch receivers have all their light

@@ -25,6 +25,7 @@ layout(std140, binding = BLOCK_RECEIVER_PATHS) uniform PathBlock { PathConstants
 #else
 #include "lpv/receivers/common.glsl"
 #endif
+// unordered LpvReceivers: each dispatch changes the receivers of its own part of the list
 layout(std430, binding = 0) restrict buffer LpvReceivers { LpvReceiver receivers[]; };
 #include "lpv/receivers/work.glsl"
 layout(std430, binding = 5) readonly restrict buffer LpvWork { LpvReceiverWork work; };
