@@ -60,7 +60,7 @@ class Tracer {
     hits_.bindStorage(3);
     skipped_.bindStorage(4);
     program.set("rayCount", static_cast<int>(count));
-    const gl::ComputePass pass("trace rays", gl::Barrier::storage | gl::Barrier::bufferUpdate);
+    const gl::ComputePass pass("trace rays", gl::Barrier::storage);
     for (std::size_t first = 0; first < count; first += kBatch) {
       program.set("firstRay", static_cast<int>(first));
       pass.dispatch(glm::ivec3(static_cast<int>(std::min(kBatch, count - first)), 1, 1), glm::ivec3(64, 1, 1));

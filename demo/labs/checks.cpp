@@ -207,7 +207,7 @@ std::vector<glm::vec4> Checks::run(int probe, std::span<const glm::vec4> inputs,
   program.set("labStride", static_cast<unsigned>(stride));
   program.set("labWidth", static_cast<unsigned>(width));
   program.set("labNoise", noise_ = static_cast<std::uint32_t>(Random(noise_ + 1u).word()));
-  gl::ComputePass("lab probe", gl::Barrier::bufferUpdate).dispatch({count, 1, 1}, {64, 1, 1});
+  gl::ComputePass("lab probe").dispatch({count, 1, 1}, {64, 1, 1});
   return results.read<glm::vec4>();
 }
 

@@ -89,7 +89,7 @@ std::vector<float> CountViews::visits(const Camera& camera, glm::ivec2 size) {
   program.set("rayCount", count);
   constexpr int kBatch = 1 << 16;
   for (int first = 0; first < count; first += kBatch) {
-    const gl::ComputePass pass("ray visits", gl::Barrier::bufferUpdate);
+    const gl::ComputePass pass("ray visits");
     program.set("firstRay", first);
     pass.dispatch(glm::ivec3(std::min(kBatch, count - first), 1, 1), glm::ivec3(64, 1, 1));
   }
@@ -313,9 +313,8 @@ std::vector<gl::Lines::Line> glyphsOf(Glyphs glyphs, const Renderer& renderer, c
   Camera inFrame = camera;
   inFrame.position -= renderer.origin();
   const std::vector<Cascade> cascades =
-      glyphs == Glyphs::receivers
-          ? placeReceiverCascades(settings.lpv.cascades, bounds, inFrame, 1.0)
-          : placeCascades(settings.lpv.cascades, bounds, inFrame.position, inFrame.direction);
+      glyphs == Glyphs::receivers ? placeReceiverCascades(settings.lpv.cascades, bounds, inFrame, 1.0)
+                                  : placeCascades(settings.lpv.cascades, bounds, inFrame.position, inFrame.direction);
   const int k = std::clamp(cascade, 0, static_cast<int>(cascades.size()) - 1);
   const Cascade& placed = cascades[static_cast<std::size_t>(k)];
   if (glyphs == Glyphs::receivers) return receiversOf(*renderer.receivers(), renderer, camera, placed, k, most);

@@ -83,9 +83,8 @@ void BarrierLedger::access(const std::string& command, std::uint64_t run, const 
                          state(a.resource).label, a.how, b.how));
     }
   const auto opened = [&](const Access& a) {
-    const bool unordered = std::any_of(accesses.begin(), accesses.end(), [&](const Access& b) {
-      return b.resource == a.resource && b.unordered;
-    });
+    const bool unordered = std::any_of(accesses.begin(), accesses.end(),
+                                       [&](const Access& b) { return b.resource == a.resource && b.unordered; });
     return Event{true, fmt::format("{} as {}", command, a.how), unordered ? run : 0,
                  std::vector<const std::string*>(kBits, nullptr)};
   };
@@ -103,7 +102,7 @@ void BarrierLedger::access(const std::string& command, std::uint64_t run, const 
 
 GLbitfield BarrierLedger::issued(GLbitfield bits, const std::string& site) const {
   const auto found = omitted_.find(site);
-  return found == omitted_.end() ? bits : bits & ~found->second;
+  return found == omitted_.end() || bits == GL_ALL_BARRIER_BITS ? bits : bits & ~found->second;
 }
 
 void BarrierLedger::cover(Event& event, GLbitfield bits, const std::string* site) {

@@ -18,8 +18,8 @@
 // Exceptions are declared in the shader, with the reason; NAME is the storage block or image:
 //   // unordered NAME: each dispatch writes the rows of its own chunk
 //   // aliased NAME: an invocation reads its own cell before it writes it
-// unordered: runs of the program within one pass need no barrier among themselves. aliased: the resource may be bound a second time in
-// the same run.
+// unordered: runs of the program within one pass need no barrier among themselves. aliased: the resource may be bound a
+// second time in the same run.
 //
 // A barrier of all kinds (GL_ALL_BARRIER_BITS) is a workaround for a driver and covers nothing here.
 #pragma once
@@ -55,8 +55,8 @@ class BarrierLedger {
   void forget(Resource resource);
   /// All of the resource was overwritten by the API: earlier shader writes are gone.
   void overwritten(Resource resource);
-  /// Accesses of one command, at the same time. run: 0 for API calls, else one number per program and pass, within which
-  /// `unordered` holds.
+  /// Accesses of one command, at the same time. run: 0 for API calls, else one number per program and pass, within
+  /// which `unordered` holds.
   void access(const std::string& command, std::uint64_t run, const std::vector<Access>& accesses);
   /// A barrier; site: the pass that issues it.
   void barrier(GLbitfield bits, const std::string& site);
@@ -90,8 +90,8 @@ class BarrierLedger {
     Event written, accessed;  ///< by a shader; any access since that write
   };
   State& state(Resource resource);
-  void require(const Event& event, const Access& access, std::uint64_t run, const std::string& label, const char* hazard,
-               const std::string& command);
+  void require(const Event& event, const Access& access, std::uint64_t run, const std::string& label,
+               const char* hazard, const std::string& command);
   void cover(Event& event, GLbitfield bits, const std::string* site);
 
   std::map<Resource, State> states_;

@@ -81,15 +81,22 @@ Resource textureAt(GLenum target) { return {Kind::texture, boundTexture(target)}
 
 GLenum targetOfSampler(GLenum type) {
   switch (type) {
-    case GL_SAMPLER_2D: case GL_SAMPLER_2D_SHADOW: case GL_INT_SAMPLER_2D: case GL_UNSIGNED_INT_SAMPLER_2D:
-      return GL_TEXTURE_2D;
-    case GL_SAMPLER_3D: case GL_INT_SAMPLER_3D: case GL_UNSIGNED_INT_SAMPLER_3D: return GL_TEXTURE_3D;
-    case GL_SAMPLER_2D_ARRAY: case GL_SAMPLER_2D_ARRAY_SHADOW: case GL_INT_SAMPLER_2D_ARRAY:
-    case GL_UNSIGNED_INT_SAMPLER_2D_ARRAY:
-      return GL_TEXTURE_2D_ARRAY;
-    case GL_SAMPLER_CUBE_MAP_ARRAY: case GL_SAMPLER_CUBE_MAP_ARRAY_SHADOW: return GL_TEXTURE_CUBE_MAP_ARRAY;
-    case GL_SAMPLER_BUFFER: case GL_INT_SAMPLER_BUFFER: case GL_UNSIGNED_INT_SAMPLER_BUFFER:
-      return GL_TEXTURE_BUFFER;
+    case GL_SAMPLER_2D:
+    case GL_SAMPLER_2D_SHADOW:
+    case GL_INT_SAMPLER_2D:
+    case GL_UNSIGNED_INT_SAMPLER_2D: return GL_TEXTURE_2D;
+    case GL_SAMPLER_3D:
+    case GL_INT_SAMPLER_3D:
+    case GL_UNSIGNED_INT_SAMPLER_3D: return GL_TEXTURE_3D;
+    case GL_SAMPLER_2D_ARRAY:
+    case GL_SAMPLER_2D_ARRAY_SHADOW:
+    case GL_INT_SAMPLER_2D_ARRAY:
+    case GL_UNSIGNED_INT_SAMPLER_2D_ARRAY: return GL_TEXTURE_2D_ARRAY;
+    case GL_SAMPLER_CUBE_MAP_ARRAY:
+    case GL_SAMPLER_CUBE_MAP_ARRAY_SHADOW: return GL_TEXTURE_CUBE_MAP_ARRAY;
+    case GL_SAMPLER_BUFFER:
+    case GL_INT_SAMPLER_BUFFER:
+    case GL_UNSIGNED_INT_SAMPLER_BUFFER: return GL_TEXTURE_BUFFER;
     default: return 0;
   }
 }
@@ -228,8 +235,7 @@ void run(bool draws, bool withElements, GLuint indirect) {
 }
 
 void api(const char* call, Resource resource, GLbitfield bit, bool writes) {
-  if (resource.second != 0)
-    g_ledger->access(call, 0, {{resource, bit, !writes, writes, false, "its target"}});
+  if (resource.second != 0) g_ledger->access(call, 0, {{resource, bit, !writes, writes, false, "its target"}});
 }
 
 /// An upload into a texture, from a bound pixel buffer or from memory.
@@ -258,14 +264,13 @@ bool add(const char* name, GlProc replacement, GlProc* driver) {
 }
 
 // HOOK(glName, (parameters), (arguments), { what the ledger learns, before the driver })
-#define HOOK(name, parameters, arguments, ...)                                   \
-  void(GLAPIENTRY* driver_##name) parameters;                                    \
-  void GLAPIENTRY on_##name parameters {                                         \
-    __VA_ARGS__                                                                  \
-    driver_##name arguments;                                                     \
-  }                                                                              \
-  const bool added_##name = add(#name, reinterpret_cast<GlProc>(&on_##name),     \
-                                reinterpret_cast<GlProc*>(&driver_##name));
+#define HOOK(name, parameters, arguments, ...) \
+  void(GLAPIENTRY * driver_##name) parameters; \
+  void GLAPIENTRY on_##name parameters {       \
+    __VA_ARGS__                                \
+    driver_##name arguments;                   \
+  }                                            \
+  const bool added_##name = add(#name, reinterpret_cast<GlProc>(&on_##name), reinterpret_cast<GlProc*>(&driver_##name));
 
 // Objects
 HOOK(glObjectLabel, (GLenum type, GLuint id, GLsizei length, const GLchar* text), (type, id, length, text), {
@@ -299,15 +304,15 @@ HOOK(glDeleteVertexArrays, (GLsizei n, const GLuint* ids), (n, ids), {
   }
 })
 HOOK(glDeleteProgram, (GLuint id), (id), { g_bound.programs.erase(id); })
-HOOK(glShaderSource, (GLuint id, GLsizei n, const GLchar* const* texts, const GLint* lengths), (id, n, texts, lengths), {
-  g_bound.shaders[id].clear();
-  for (GLsizei i = 0; i < n; ++i)
-    g_bound.shaders[id] += lengths ? std::string(texts[i], static_cast<std::size_t>(lengths[i])) : texts[i];
-})
+HOOK(glShaderSource, (GLuint id, GLsizei n, const GLchar* const* texts, const GLint* lengths), (id, n, texts, lengths),
+     {
+       g_bound.shaders[id].clear();
+       for (GLsizei i = 0; i < n; ++i)
+         g_bound.shaders[id] += lengths ? std::string(texts[i], static_cast<std::size_t>(lengths[i])) : texts[i];
+     })
 HOOK(glDeleteShader, (GLuint id), (id), { g_bound.shaders.erase(id); })
-HOOK(glAttachShader, (GLuint program, GLuint id), (program, id), {
-  g_bound.programs[program].text += g_bound.shaders[id];
-})
+HOOK(glAttachShader, (GLuint program, GLuint id), (program, id),
+     { g_bound.programs[program].text += g_bound.shaders[id]; })
 HOOK(glLinkProgram, (GLuint program), (program), { g_bound.programs[program].known = false; })
 
 // Bindings
@@ -322,12 +327,13 @@ HOOK(glBindBufferBase, (GLenum target, GLuint index, GLuint id), (target, index,
 })
 HOOK(glActiveTexture, (GLenum unit), (unit), { g_bound.activeUnit = unit - GL_TEXTURE0; })
 HOOK(glBindTexture, (GLenum target, GLuint id), (target, id), { g_bound.textures[{g_bound.activeUnit, target}] = id; })
-HOOK(glTexBuffer, (GLenum target, GLenum format, GLuint buffer), (target, format, buffer), {
-  g_bound.bufferOfTexture[boundTexture(target)] = buffer;
-})
+HOOK(glTexBuffer, (GLenum target, GLenum format, GLuint buffer), (target, format, buffer),
+     { g_bound.bufferOfTexture[boundTexture(target)] = buffer; })
 HOOK(glBindImageTexture,
      (GLuint unit, GLuint id, GLint level, GLboolean layered, GLint layer, GLenum access, GLenum format),
-     (unit, id, level, layered, layer, access, format), { g_bound.images[unit] = {id, access}; })
+     (unit, id, level, layered, layer, access, format), {
+       g_bound.images[unit] = {id, access};
+     })
 HOOK(glBindFramebuffer, (GLenum target, GLuint id), (target, id), {
   if (target != GL_READ_FRAMEBUFFER) g_bound.framebuffer = id;
   if (target != GL_DRAW_FRAMEBUFFER) g_bound.readFramebuffer = id;
@@ -337,12 +343,11 @@ HOOK(glFramebufferTexture, (GLenum target, GLenum attachment, GLuint texture, GL
 HOOK(glBindVertexArray, (GLuint id), (id), { g_bound.vertexArray = id; })
 HOOK(glVertexAttribPointer,
      (GLuint index, GLint size, GLenum type, GLboolean normalized, GLsizei stride, const void* offset),
-     (index, size, type, normalized, stride, offset), {
-       g_bound.attributes[g_bound.vertexArray].insert(bound(GL_ARRAY_BUFFER));
-     })
+     (index, size, type, normalized, stride, offset),
+     { g_bound.attributes[g_bound.vertexArray].insert(bound(GL_ARRAY_BUFFER)); })
 HOOK(glPushDebugGroup, (GLenum source, GLuint id, GLsizei length, const GLchar* text), (source, id, length, text), {
-  g_bound.groups.push_back({length < 0 ? std::string(text) : std::string(text, static_cast<std::size_t>(length)),
-                            ++g_bound.groupCount});
+  g_bound.groups.push_back(
+      {length < 0 ? std::string(text) : std::string(text, static_cast<std::size_t>(length)), ++g_bound.groupCount});
 })
 HOOK(glPopDebugGroup, (), (), {
   if (!g_bound.groups.empty()) g_bound.groups.pop_back();
@@ -358,24 +363,18 @@ HOOK(glMemoryBarrier, (GLbitfield bits), (bits), {
 
 // Draws and dispatches
 HOOK(glDispatchCompute, (GLuint x, GLuint y, GLuint z), (x, y, z), { run(false, false, 0); })
-HOOK(glDispatchComputeIndirect, (GLintptr offset), (offset), {
-  run(false, false, bound(GL_DISPATCH_INDIRECT_BUFFER));
-})
+HOOK(glDispatchComputeIndirect, (GLintptr offset), (offset), { run(false, false, bound(GL_DISPATCH_INDIRECT_BUFFER)); })
 HOOK(glDrawArrays, (GLenum mode, GLint first, GLsizei count), (mode, first, count), { run(true, false, 0); })
 HOOK(glDrawArraysInstanced, (GLenum mode, GLint first, GLsizei count, GLsizei instances),
      (mode, first, count, instances), { run(true, false, 0); })
-HOOK(glDrawElements, (GLenum mode, GLsizei count, GLenum type, const void* indices), (mode, count, type, indices), {
-  run(true, true, 0);
-})
+HOOK(glDrawElements, (GLenum mode, GLsizei count, GLenum type, const void* indices), (mode, count, type, indices),
+     { run(true, true, 0); })
 
 // The API's own reads and writes
-HOOK(glBufferData, (GLenum target, GLsizeiptr bytes, const void* data, GLenum usage), (target, bytes, data, usage), {
-  g_ledger->overwritten(bufferAt(target));
-})
+HOOK(glBufferData, (GLenum target, GLsizeiptr bytes, const void* data, GLenum usage), (target, bytes, data, usage),
+     { g_ledger->overwritten(bufferAt(target)); })
 HOOK(glBufferSubData, (GLenum target, GLintptr offset, GLsizeiptr bytes, const void* data),
-     (target, offset, bytes, data), {
-       api("glBufferSubData", bufferAt(target), GL_BUFFER_UPDATE_BARRIER_BIT, true);
-     })
+     (target, offset, bytes, data), { api("glBufferSubData", bufferAt(target), GL_BUFFER_UPDATE_BARRIER_BIT, true); })
 HOOK(glClearBufferData, (GLenum target, GLenum internal, GLenum format, GLenum type, const void* data),
      (target, internal, format, type, data), {
        api("glClearBufferData", bufferAt(target), GL_BUFFER_UPDATE_BARRIER_BIT, true);
@@ -386,9 +385,8 @@ HOOK(glCopyBufferSubData, (GLenum from, GLenum to, GLintptr fromOffset, GLintptr
        api("glCopyBufferSubData", bufferAt(from), GL_BUFFER_UPDATE_BARRIER_BIT, false);
        api("glCopyBufferSubData", bufferAt(to), GL_BUFFER_UPDATE_BARRIER_BIT, true);
      })
-HOOK(glGetBufferSubData, (GLenum target, GLintptr offset, GLsizeiptr bytes, void* data), (target, offset, bytes, data), {
-  api("glGetBufferSubData", bufferAt(target), GL_BUFFER_UPDATE_BARRIER_BIT, false);
-})
+HOOK(glGetBufferSubData, (GLenum target, GLintptr offset, GLsizeiptr bytes, void* data), (target, offset, bytes, data),
+     { api("glGetBufferSubData", bufferAt(target), GL_BUFFER_UPDATE_BARRIER_BIT, false); })
 HOOK(glTexSubImage2D,
      (GLenum target, GLint level, GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type,
       const void* data),
@@ -398,12 +396,10 @@ HOOK(glTexSubImage3D,
       GLenum format, GLenum type, const void* data),
      (target, level, x, y, z, width, height, depth, format, type, data), { upload("glTexSubImage3D", target); })
 HOOK(glGetTexImage, (GLenum target, GLint level, GLenum format, GLenum type, void* data),
-     (target, level, format, type, data), {
-       api("glGetTexImage", textureAt(target), GL_TEXTURE_UPDATE_BARRIER_BIT, false);
-     })
-HOOK(glGenerateMipmap, (GLenum target), (target), {
-  api("glGenerateMipmap", textureAt(target), GL_TEXTURE_UPDATE_BARRIER_BIT, true);
-})
+     (target, level, format, type, data),
+     { api("glGetTexImage", textureAt(target), GL_TEXTURE_UPDATE_BARRIER_BIT, false); })
+HOOK(glGenerateMipmap, (GLenum target), (target),
+     { api("glGenerateMipmap", textureAt(target), GL_TEXTURE_UPDATE_BARRIER_BIT, true); })
 HOOK(glClearTexImage, (GLuint id, GLint level, GLenum format, GLenum type, const void* data),
      (id, level, format, type, data), {
        api("glClearTexImage", {Kind::texture, id}, GL_TEXTURE_UPDATE_BARRIER_BIT, true);
@@ -420,16 +416,13 @@ void attachmentsAccessed(const char* call, GLuint framebuffer, bool writes) {
   addAttachments(accesses, framebuffer, writes, "attachment");
   g_ledger->access(call, 0, accesses);
 }
-HOOK(glClearBufferfv, (GLenum buffer, GLint index, const GLfloat* value), (buffer, index, value), {
-  attachmentsAccessed("glClearBufferfv", g_bound.framebuffer, true);
-})
-HOOK(glClearBufferuiv, (GLenum buffer, GLint index, const GLuint* value), (buffer, index, value), {
-  attachmentsAccessed("glClearBufferuiv", g_bound.framebuffer, true);
-})
+HOOK(glClearBufferfv, (GLenum buffer, GLint index, const GLfloat* value), (buffer, index, value),
+     { attachmentsAccessed("glClearBufferfv", g_bound.framebuffer, true); })
+HOOK(glClearBufferuiv, (GLenum buffer, GLint index, const GLuint* value), (buffer, index, value),
+     { attachmentsAccessed("glClearBufferuiv", g_bound.framebuffer, true); })
 HOOK(glReadPixels, (GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type, void* data),
-     (x, y, width, height, format, type, data), {
-       attachmentsAccessed("glReadPixels", g_bound.readFramebuffer, false);
-     })
+     (x, y, width, height, format, type, data),
+     { attachmentsAccessed("glReadPixels", g_bound.readFramebuffer, false); })
 HOOK(glBlitFramebuffer,
      (GLint x0, GLint y0, GLint x1, GLint y1, GLint X0, GLint Y0, GLint X1, GLint Y1, GLbitfield mask, GLenum filter),
      (x0, y0, x1, y1, X0, Y0, X1, Y1, mask, filter), {

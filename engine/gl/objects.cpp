@@ -341,6 +341,8 @@ void BufferTexture::bind(GLuint unit) const {
 
 void copyTexels(const Texture& from, glm::ivec2 fromCorner, const Texture& to, glm::ivec2 toCorner, glm::ivec2 size) {
   CHECK(from.format() == to.format(), "formats {:#x} and {:#x}", raw(from.format()), raw(to.format()));
+  from.settle(Barrier::textureUpdate);
+  to.settle(Barrier::textureUpdate);
   glCopyImageSubData(from.id(), raw(from.kind()), 0, fromCorner.x, fromCorner.y, 0, to.id(), raw(to.kind()), 0,
                      toCorner.x, toCorner.y, 0, size.x, size.y, 1);
 }

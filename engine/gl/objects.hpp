@@ -191,8 +191,7 @@ class BufferTexture {
   Handle<detail::deleteTexture> texture_;
 };
 
-/// Copies texels of level 0 between 2D textures of the same format. Shader writes need Barrier::textureUpdate
-/// first.
+/// Copies texels of level 0 between 2D textures of the same format.
 void copyTexels(const Texture& from, glm::ivec2 fromCorner, const Texture& to, glm::ivec2 toCorner, glm::ivec2 size);
 
 /// Sets every texel of every level of every listed texture to zero: ARB_clear_texture if available, else an upload of

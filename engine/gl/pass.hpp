@@ -54,11 +54,13 @@ class RasterPass {
   DebugGroup group_;
 };
 
-/// Dispatches compute work. At its end a barrier makes the results visible to the accesses named; at its beginning one
-/// makes it wait for accesses of earlier draws, which issue none, to what it writes.
+/// Dispatches compute work. The barrier at its end makes the results visible to later draws and dispatches (objects
+/// settle themselves before the API uses them); the one at its beginning lets it wait for earlier draws, which issue
+/// none, before it writes what they access.
 class ComputePass {
  public:
-  ComputePass(const std::string& name, Barrier atEnd, Barrier atBegin = Barrier::none) : group_(name), atEnd_(atEnd) {
+  explicit ComputePass(const std::string& name, Barrier atEnd = Barrier::none, Barrier atBegin = Barrier::none)
+      : group_(name), atEnd_(atEnd) {
     memoryBarrier(atBegin);
   }
   ~ComputePass() { memoryBarrier(atEnd_); }

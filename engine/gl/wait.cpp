@@ -28,7 +28,8 @@ void waitFor(GLsync fence) {
     throwIfReset();
     if (const double seconds = secondsSince(start); g_limit > 0.0 && seconds > g_limit)
       throw Error(ErrorKind::fault, fmt::format("the GPU has not finished after {:.0f} s; the last pass was '{}' "
-                                                "(LUCERNA_GPU_SECONDS sets another limit)", seconds, lastPass()));
+                                                "(LUCERNA_GPU_SECONDS sets another limit)",
+                                                seconds, lastPass()));
     status = glClientWaitSync(fence, 0, kTenthOfASecond);
   }
   if (status == GL_WAIT_FAILED) throwIfError(lastPass());

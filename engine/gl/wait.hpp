@@ -12,7 +12,8 @@ void finish();
 /// The same for the commands before `fence`, once they have been flushed.
 void waitFor(GLsync fence);
 
-/// Before a call that waits on its own, such as glGetBufferSubData: waits here, within the limit. No effect without one.
+/// Before a call that waits on its own, such as glGetBufferSubData: waits here, within the limit. No effect without
+/// one.
 void waitBeforeReading();
 
 /// Limit in seconds; 0: none. LUCERNA_GPU_SECONDS sets another one. A context sets it to kGpuSeconds on hardware and to

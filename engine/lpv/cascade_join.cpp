@@ -36,7 +36,7 @@ LpvCascadeJoin::LpvCascadeJoin(gl::ProgramLibrary& programs, const gl::Capabilit
 void LpvCascadeJoin::finish() {
   if (!finish_) return;
   {
-    const gl::ComputePass pass("lpv finish", gl::Barrier::storage | gl::Barrier::pixelBuffer);
+    const gl::ComputePass pass("lpv finish", gl::Barrier::storage);
     finish_->use();
     texels_.bindStorage(kResultBuffer);
     pass.dispatch(result_[0].size(), kLpvGroup);
@@ -57,8 +57,7 @@ void LpvCascadeJoin::join() {
       balances_.buffer().bindStorage(kBalancesBuffer);
       pass.dispatch(glm::ivec3((cells_ + 1) / 2), kLpvGroup);
     }
-    const gl::ComputePass pass("lpv join",
-                               gl::Barrier::storage | gl::Barrier::textureFetch | gl::Barrier::pixelBuffer);
+    const gl::ComputePass pass("lpv join", gl::Barrier::storage | gl::Barrier::textureFetch);
     const gl::Program& program = coarsest ? *joinCoarsest_ : *join_;
     program.use();
     program.set("cascade", k);

@@ -82,7 +82,7 @@ void LpvGeometryVolume::fill(const LpvInputs& inputs) {
   if (counted) count(maps, inputs);
   else draw(maps, inputs);
   if (!averageFaces_) return;
-  const gl::ComputePass pass("lpv geometry faces", gl::Barrier::textureFetch);
+  const gl::ComputePass pass("lpv geometry faces");
   if (counted) {
     averageCountedFaces_->use();
     counts_.bind(0);
@@ -112,8 +112,7 @@ void LpvGeometryVolume::count(const Maps& maps, const LpvInputs& inputs) {
   const float scale = fixedScale(settings_, 1.0233267079464885 * area / (finest * finest));
   counts_.clear();
   {
-    const gl::ComputePass pass("lpv count surfels",
-                               gl::Barrier::textureFetch | gl::Barrier::storage | gl::Barrier::pixelBuffer);
+    const gl::ComputePass pass("lpv count surfels", gl::Barrier::textureFetch | gl::Barrier::storage);
     count_->use();
     count_->set("fixedScale", scale);
     counts_.buffer().bindStorage(kLpvFrontBuffer);
@@ -161,9 +160,8 @@ void LpvGeometryVolume::draw(const ReflectiveShadowMap::Outputs& map, const LpvI
 }
 
 void LpvGeometryVolume::mergeView() {
-  const gl::ComputePass pass("lpv merge views",
-                             gl::Barrier::textureFetch | gl::Barrier::image | gl::Barrier::framebuffer,
-                             gl::Barrier::image);
+  const gl::ComputePass pass(
+      "lpv merge views", gl::Barrier::textureFetch | gl::Barrier::image | gl::Barrier::framebuffer, gl::Barrier::image);
   mergeViews_->use();
   viewPotential_.bind(0);
   potential_->bindImage(0, gl::Access::readWrite);

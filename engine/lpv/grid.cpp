@@ -74,7 +74,7 @@ float fixedScale(const LpvSettings& settings, double largest) {
 
 void resolveCounts(const gl::Program& resolve, const gl::BufferTexture& counts, const glm::ivec3& size, int channels,
                    float scale) {
-  const gl::ComputePass pass("lpv resolve", gl::Barrier::textureFetch | gl::Barrier::pixelBuffer);
+  const gl::ComputePass pass("lpv resolve", gl::Barrier::textureFetch);
   resolve.use();
   resolve.set("fixedScale", scale);
   resolve.set("size", size);

@@ -77,8 +77,9 @@ void LpvInjection::countLights(const LpvInputs& inputs) {
     gl::clearToZero(targets, haveClearTexture_);
   }
   {
-    const gl::ComputePass pass("lpv inject by atomics", gl::Barrier::textureFetch | gl::Barrier::image |
-                                                            gl::Barrier::storage | gl::Barrier::pixelBuffer);
+    // Counts that are not resolved are read as the first front.
+    const gl::Barrier read = halves || !resolve_ ? gl::Barrier::textureFetch : gl::Barrier::none;
+    const gl::ComputePass pass("lpv inject by atomics", gl::Barrier::storage | read);
     inject_->use();
     inject_->set("fixedScale", scale);
     counts_.buffer().bindStorage(kLpvFrontBuffer);
@@ -91,7 +92,7 @@ void LpvInjection::countLights(const LpvInputs& inputs) {
     }
   }
   if (halves) {
-    const gl::ComputePass pass("lpv resolve", gl::Barrier::textureFetch | gl::Barrier::pixelBuffer);
+    const gl::ComputePass pass("lpv resolve", gl::Barrier::textureFetch);
     resolve_->use();
     for (GLuint channel = 0; channel < 3; ++channel) halves_[channel].bind(channel);
     counts_.buffer().bindStorage(kLpvFrontBuffer);

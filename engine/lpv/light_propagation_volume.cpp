@@ -168,7 +168,7 @@ std::vector<AskedPart> LightPropagationVolume::ask(gl::ProgramLibrary& programs,
   const AskedParts parts(8 * LPV_MAX_CASCADES);
   {
     const gl::Program& program = programs.loadCompute("lpv ask", "lpv/ask.comp", lookupFlags(settings_));
-    const gl::ComputePass pass("lpv ask", gl::Barrier::bufferUpdate);
+    const gl::ComputePass pass("lpv ask");
     program.use();
     bindForLookup();
     program.set("askedPosition", position);

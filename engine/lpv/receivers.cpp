@@ -202,8 +202,7 @@ void LpvReceivers::keep() {
   std::swap(work_[0], work_[1]);
   work_[0].upload(0, kWorkWords * sizeof(GLuint), noWork().data());
   slotTable_.clear();
-  const gl::ComputePass pass("lpv keep receivers",
-                             gl::Barrier::storage | gl::Barrier::textureFetch | gl::Barrier::command);
+  const gl::ComputePass pass("lpv keep receivers", gl::Barrier::storage | gl::Barrier::textureFetch);
   keep_->use();
   bindReceivers();
   receivers_[1].bindStorage(kReceiversBuffer);
@@ -308,8 +307,7 @@ void LpvReceivers::gather(const Inputs& inputs) {
 void LpvReceivers::store(float mostChange) {
   const std::array<const gl::Texture*, 1> textures{&irradiance_};
   gl::clearToZero(textures, clearTexture_);
-  const gl::ComputePass pass("lpv store receivers",
-                             gl::Barrier::storage | gl::Barrier::textureFetch | gl::Barrier::textureUpdate,
+  const gl::ComputePass pass("lpv store receivers", gl::Barrier::storage | gl::Barrier::textureFetch,
                              gl::Barrier::image);
   store_->use();
   store_->set("enoughPaths", static_cast<unsigned>(std::min(settings_.samples, settings_.leastRays)));
@@ -360,7 +358,7 @@ std::vector<AskedPart> LpvReceivers::ask(const glm::vec3& position, const glm::v
   {
     const gl::Program& program =
         programs_->loadCompute("lpv ask receivers", "lpv/receivers/ask.comp", lookupFlags(settings_));
-    const gl::ComputePass pass("lpv ask receivers", gl::Barrier::bufferUpdate);
+    const gl::ComputePass pass("lpv ask receivers");
     program.use();
     bindReceivers();
     bindForLookup();

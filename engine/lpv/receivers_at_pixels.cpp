@@ -70,7 +70,7 @@ Image LpvReceivers::readFromCells(const std::vector<Cascade>& cascades, int path
     cells.bindUniform(BLOCK_LPV);
     for (int done = 0; done < paths; done += LPV_LANES) {
       gl::Submission::add(static_cast<double>(kAtOnce * LPV_LANES) * kTurnsOfPath);
-      const gl::ComputePass pass("lpv paths from cells", gl::Barrier::storage | gl::Barrier::bufferUpdate);
+      const gl::ComputePass pass("lpv paths from cells", gl::Barrier::storage);
       program.use();
       dispatchListed(pass, program, work);
     }

@@ -416,9 +416,7 @@ void PathTracer::dispatch(glm::ivec2 corner, glm::ivec2 size, std::uint32_t targ
   constants_.sampleTarget = target;
   constants_.turns = turns_.units();
   constantsBuffer_.upload(0, sizeof constants_, &constants_);
-  const gl::ComputePass pass("path tracing",
-                             gl::Barrier::storage | gl::Barrier::bufferUpdate | gl::Barrier::image |
-                                 gl::Barrier::textureUpdate | gl::Barrier::textureFetch,
+  const gl::ComputePass pass("path tracing", gl::Barrier::storage | gl::Barrier::image | gl::Barrier::textureFetch,
                              gl::Barrier::image);
   program_->use();
   scene_->bind();

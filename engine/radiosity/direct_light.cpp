@@ -68,7 +68,7 @@ class ShadowRays {
     const gl::Buffer rayBuffer("direct light rays", batch.size() * sizeof(Ray), batch.data(), gl::Usage::streamDraw);
     const gl::Buffer flags("direct light blocked", batch.size() * sizeof(GLuint), nullptr, gl::Usage::dynamicRead);
     {
-      const gl::ComputePass pass("direct light", gl::Barrier::storage | gl::Barrier::bufferUpdate);
+      const gl::ComputePass pass("direct light");
       program_.use();
       program_.set("rayCount", static_cast<int>(batch.size()));
       rays_.bind();

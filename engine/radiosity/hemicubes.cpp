@@ -265,8 +265,7 @@ DrawnHemicubes Hemicubes::draw(int first, int count, int roll) {
   largeList_.bindStorage(kLargeList);
   constexpr GLuint kNoGroups[4] = {0, 1, 1, 0};
   largeList_.upload(0, sizeof kNoGroups, kNoGroups);
-  constexpr gl::Barrier kBarrier =
-      gl::Barrier::storage | gl::Barrier::bufferUpdate | gl::Barrier::command | gl::Barrier::textureFetch;
+  constexpr gl::Barrier kStorage = gl::Barrier::storage, kWithCounts = kStorage | gl::Barrier::command;
   const glm::ivec3 triangles((count + kHemicubesEach - 1) / kHemicubesEach, patchCount_, 1),
       trianglesGroup(1, kGroup, 1);
   // Pixels in rows along z: an axis has 65,535 groups.
@@ -277,7 +276,8 @@ DrawnHemicubes Hemicubes::draw(int first, int count, int roll) {
   if (!listsKept()) {
     keys_.buffer().clear();
     for (const gl::Program* program : {depth_, depthLarge_}) {
-      const gl::ComputePass pass(program->name(), kBarrier);
+      const gl::ComputePass pass(program->name(),
+                                 program == depth_ ? kWithCounts : kStorage | gl::Barrier::textureFetch);
       begin(*program, first, count);
       if (program == depth_) pass.dispatch(triangles, trianglesGroup);
       else pass.dispatchIndirect(largeList_);
@@ -299,7 +299,7 @@ DrawnHemicubes Hemicubes::draw(int first, int count, int roll) {
       gl::drawTriangles(3 * patchCount_, count);
     }
     const gl::Program& program = itemBuffer_ ? *itemBuffer_->sum : *traceRays_;
-    const gl::ComputePass pass(program.name(), kBarrier);
+    const gl::ComputePass pass(program.name(), kWithCounts);
     begin(program, first, count);
     if (itemBuffer_) {
       itemBuffer_->items.bind(kItemsUnit);
@@ -311,7 +311,7 @@ DrawnHemicubes Hemicubes::draw(int first, int count, int roll) {
   }
   // Turn pixels into form factors, then replace near pairs by their closed form.
   for (const gl::Program* program : {sum_, sumLarge_, exact_}) {
-    const gl::ComputePass pass(program->name(), kBarrier);
+    const gl::ComputePass pass(program->name(), program == sum_ ? kWithCounts : kStorage);
     begin(*program, first, count);
     if (program == exact_ && rays_) {
       rays_->bind();

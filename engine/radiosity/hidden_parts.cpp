@@ -48,7 +48,7 @@ std::vector<GLuint> seenFrom(const gl::Program& program, const RayScene& rays, c
                         gl::Usage::streamDraw);
     const gl::Buffer out("hidden parts seen", rayCount * sizeof(GLuint), nullptr, gl::Usage::dynamicRead);
     {
-      const gl::ComputePass pass("hidden parts", gl::Barrier::storage | gl::Barrier::bufferUpdate);
+      const gl::ComputePass pass("hidden parts");
       program.use();
       program.set("receiverCount", static_cast<int>(receivers.size()));
       program.set("raysEach", static_cast<int>(raysEach));

@@ -139,7 +139,7 @@ std::vector<AskedPart> RsmGather::ask(gl::ProgramLibrary& programs, const Inputs
     {
       const gl::Program& program = programs.loadCompute(fmt::format("rsm ask {}", static_cast<int>(map.rsm.light)),
                                                         "rsm/ask.comp", flagsOfLight);
-      const gl::ComputePass pass("rsm ask", gl::Barrier::bufferUpdate);
+      const gl::ComputePass pass("rsm ask");
       bindMap(program, settings_, map);
       visible_->bind(program, inputs.worldFromClip);
       program.set("lowStep", std::max(settings_.lowResolution, 1));
@@ -189,10 +189,8 @@ void RsmGather::gatherFull(const Inputs& inputs) {
     work_.upload(0, sizeof start, &start);
   }
   for (const Map& map : inputs.maps) {
-    const gl::ComputePass pass(
-        "gather full",
-        gl::Barrier::storage | gl::Barrier::textureFetch | gl::Barrier::bufferUpdate | gl::Barrier::image,
-        gl::Barrier::image);
+    const gl::ComputePass pass("gather full", gl::Barrier::storage | gl::Barrier::textureFetch | gl::Barrier::image,
+                               gl::Barrier::image);
     const gl::Program& program = *full_[static_cast<std::size_t>(map.rsm.light)];
     bindMap(program, settings_, map, &map != &inputs.maps.front());
     bindVisible(program, inputs);

@@ -20,9 +20,7 @@ layout(std140, binding = 0) uniform PathBlock { PathConstants tracer; };
 #include "rays/materials.glsl"
 #include "rays/bvh.glsl"
 #include "rays/environment.glsl"
-#if NEXT_EVENT
 #include "rays/lights.glsl"
-#endif
 
 layout(rgba32ui, binding = 0) uniform uimage2D filmMean;    // xyz and, as an integer, the number of samples
 layout(rgba32ui, binding = 1) uniform uimage2D filmSpread;  // sum of squared deviations; w unused

@@ -1,8 +1,6 @@
-// Samples one light, chosen by its share of the scene's power, and a point on it: storage block 4. Flags: SUN, SPOTS,
+// Samples one light, chosen by its share of the scene's power, and a point on it: storage block 4. Flags: NEXT_EVENT, SUN, SPOTS,
 // POINTS, EMISSION, ENVIRONMENT_PICTURE. A constant environment is left to scattered rays, which sample it optimally.
 #include "lib/spot.glsl"
-
-layout(std430, binding = 4) readonly restrict buffer LightBlock { PathLight lights[]; };
 
 struct LightSample {
   vec3 direction;  // unit, towards it
@@ -14,6 +12,8 @@ struct LightSample {
   bool infinite;
 };
 
+#if NEXT_EVENT
+layout(std430, binding = 4) readonly restrict buffer LightBlock { PathLight lights[]; };
 uint pickedLight;  // by sampleLight; for callers that need it
 
 // xi: position on the light; words: select the light. False: the selected light does not reach the point.
@@ -82,3 +82,4 @@ bool sampleLight(vec3 position, vec2 xi, uvec4 words, out LightSample light) {
 #endif
   return reaches;
 }
+#endif

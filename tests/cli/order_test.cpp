@@ -36,7 +36,8 @@ class ReversedShaders : public test::FaultyShaders {
   };
   static constexpr Name kNames[] = {
       {"gl_GlobalInvocationID", "@GLOBAL@",
-       "((gl_NumWorkGroups - 1u - gl_WorkGroupID) * gl_WorkGroupSize + (gl_WorkGroupSize - 1u - gl_LocalInvocationID))"},
+       "((gl_NumWorkGroups - 1u - gl_WorkGroupID) * gl_WorkGroupSize + (gl_WorkGroupSize - 1u - "
+       "gl_LocalInvocationID))"},
       {"gl_WorkGroupID", "@GROUP@", "(gl_NumWorkGroups - 1u - gl_WorkGroupID)"},
       {"gl_LocalInvocationIndex", "@INDEX@",
        "(gl_WorkGroupSize.x * gl_WorkGroupSize.y * gl_WorkGroupSize.z - 1u - gl_LocalInvocationIndex)"},
@@ -56,10 +57,9 @@ TEST_P(Order, OfGroupsAndLanesChangesNoBit) {
   const test::TempFolder folder;
   const auto render = [&](const char* name, const std::string& environment) {
     const std::filesystem::path file = folder / name;
-    const test::RunResult result =
-        test::run(fmt::format("{} '" LUCERNA_BINARY "' render '" LUCERNA_SOURCE_DIR
-                              "'/{} --size 32x32 --quiet --check-barriers -o '{}'",
-                              environment, GetParam().second, file.string()));
+    const test::RunResult result = test::run(fmt::format("{} '" LUCERNA_BINARY "' render '" LUCERNA_SOURCE_DIR
+                                                         "'/{} --size 32x32 --quiet --check-barriers -o '{}'",
+                                                         environment, GetParam().second, file.string()));
     EXPECT_EQ(result.exitCode, 0) << result.err;
     return result.exitCode == 0 ? readFileText(file) : std::string(name);
   };
@@ -73,30 +73,38 @@ TEST_P(Order, OfGroupsAndLanesChangesNoBit) {
 
 INSTANTIATE_TEST_SUITE_P(
     Techniques, Order,
-    ::testing::Values(
-        std::pair("Direct", "assets/cornell/cornell.json --technique direct"),
-        std::pair("Rsm", "assets/cornell/cornell.json --technique rsm --set rsm.size=64 --set rsm.samples=32"),
-        std::pair("RsmOfEachPixel", "assets/cornell/cornell.json --technique rsm --set rsm.size=64 "
-                                    "--set rsm.samples=32 --set rsm.interpolate=off"),
-        std::pair("LpvRays", "assets/cornell/cornell.json --set lpv.transport=rays --set lpv.cells=8 "
-                             "--set lpv.samples=16"),
-        std::pair("LpvGather", "assets/cornell/cornell.json --set lpv.transport=gather --set lpv.cells=8 "
-                               "--set rsm.size=32"),
-        std::pair("LpvPropagate", "assets/cornell/cornell.json --set lpv.transport=propagate --set lpv.cells=8 "
-                                  "--set rsm.size=64 --set lpv.bounces=2"),
-        std::pair("LpvFixedPoint", "assets/cornell/cornell.json --set lpv.transport=propagate --set lpv.cells=8 "
-                                   "--set rsm.size=64 --set lpv.fill=fixed"),
-        std::pair("RadiosityItemBuffer", "assets/cornell/cornell.json --technique radiosity "
-                                         "--set radiosity.visibility=item-buffer --set radiosity.edge=0.5 "
-                                         "--set radiosity.resolution=16"),
-        std::pair("RadiosityRaster", "assets/cornell/cornell.json --technique radiosity "
-                                     "--set radiosity.visibility=raster --set radiosity.edge=0.5 "
-                                     "--set radiosity.resolution=16"),
-        std::pair("RadiosityRays", "assets/cornell/cornell.json --technique radiosity "
-                                   "--set radiosity.visibility=rays --set radiosity.edge=0.5 "
-                                   "--set radiosity.resolution=16"),
-        std::pair("Path", "assets/cornell/cornell.json --technique path --spp 2"),
-        std::pair("Media", "assets/media/smoke/smoke.json --technique path --spp 1")),
+    ::testing::Values(std::pair("Direct", "assets/cornell/cornell.json --technique direct"),
+                      std::pair("Rsm",
+                                "assets/cornell/cornell.json --technique rsm --set rsm.size=64 --set rsm.samples=32"),
+                      std::pair("RsmOfEachPixel",
+                                "assets/cornell/cornell.json --technique rsm --set rsm.size=64 "
+                                "--set rsm.samples=32 --set rsm.interpolate=off"),
+                      std::pair("LpvRays",
+                                "assets/cornell/cornell.json --set lpv.transport=rays --set lpv.cells=8 "
+                                "--set lpv.samples=16"),
+                      std::pair("LpvGather",
+                                "assets/cornell/cornell.json --set lpv.transport=gather --set lpv.cells=8 "
+                                "--set rsm.size=32"),
+                      std::pair("LpvPropagate",
+                                "assets/cornell/cornell.json --set lpv.transport=propagate --set lpv.cells=8 "
+                                "--set rsm.size=64 --set lpv.bounces=2"),
+                      std::pair("LpvFixedPoint",
+                                "assets/cornell/cornell.json --set lpv.transport=propagate --set lpv.cells=8 "
+                                "--set rsm.size=64 --set lpv.fill=fixed"),
+                      std::pair("RadiosityItemBuffer",
+                                "assets/cornell/cornell.json --technique radiosity "
+                                "--set radiosity.visibility=item-buffer --set radiosity.edge=0.5 "
+                                "--set radiosity.resolution=16"),
+                      std::pair("RadiosityRaster",
+                                "assets/cornell/cornell.json --technique radiosity "
+                                "--set radiosity.visibility=raster --set radiosity.edge=0.5 "
+                                "--set radiosity.resolution=16"),
+                      std::pair("RadiosityRays",
+                                "assets/cornell/cornell.json --technique radiosity "
+                                "--set radiosity.visibility=rays --set radiosity.edge=0.5 "
+                                "--set radiosity.resolution=16"),
+                      std::pair("Path", "assets/cornell/cornell.json --technique path --spp 2"),
+                      std::pair("Media", "assets/media/smoke/smoke.json --technique path --spp 1")),
     [](const auto& info) { return info.param.first; });
 
 }  // namespace

@@ -37,7 +37,7 @@ TEST_F(ClampedInt, EveryFloatHasADefinedInteger) {
   in.bindStorage(0);
   out.bindStorage(1);
   {
-    const gl::ComputePass pass("probe", gl::Barrier::bufferUpdate);
+    const gl::ComputePass pass("probe");
     program.use();
     pass.dispatch({static_cast<int>(probes.size()), 1, 1}, {64, 1, 1});
   }

@@ -682,7 +682,7 @@ TEST_F(GlPasses, ComputeCoversWhatIsAskedForAndMakesItVisible) {
   Texture target("t", Format::rgba32f, glm::ivec3(5, 3, 2));
   poison();
   {
-    const ComputePass pass("count", Barrier::textureUpdate);
+    const ComputePass pass("count");
     library().loadCompute("count", "count.comp").use();
     target.bindImage(0, Access::write);
     pass.dispatch(target.size(), {4, 2, 1});

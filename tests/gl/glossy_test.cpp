@@ -158,7 +158,7 @@ class GlossyTest : public test::SharedProgramsTest {
     const gl::Program& program = library().loadCompute("glossy probe", "lpv/glossy_probe.comp", flags);
     const GlossyLobes lobes;
     {
-      const gl::ComputePass pass("glossy probe", gl::Barrier::bufferUpdate);
+      const gl::ComputePass pass("glossy probe");
       program.use();
       block.bindUniform(BLOCK_LPV);
       for (GLuint c = 0; c < 3; ++c) textures[c].bind(UNIT_LPV_RED + c);

@@ -689,7 +689,7 @@ class RsmGatherDeviations : public LpvDeviations {
         out("irradiances", sizeof(glm::vec4), nullptr, gl::Usage::streamRead);
     const gl::Buffer samples("pattern", pattern.size() * sizeof(glm::vec4), pattern.data(), gl::Usage::staticDraw);
     {
-      const gl::ComputePass pass("probe", gl::Barrier::bufferUpdate);
+      const gl::ComputePass pass("probe");
       RsmGather::bindMap(library().loadCompute("rsm gather probe", "rsm/gather_probe.comp",
                                                RsmGather::flags(s, RsmGather::Light::sun)),
                          s, {{textures[0], textures[1], textures[2], static_cast<float>(map.texelArea())}});

@@ -50,7 +50,7 @@ class MediaFunctions : public test::SharedProgramsTest {
                      records = bufferOf(packed.media, 2), grids = bufferOf(packed.grids, 0),
                      densities = bufferOf(packed.densities, 1), interiors = bufferOf(boundaries.interiors, 7);
     {
-      const gl::ComputePass pass("probe", gl::Barrier::bufferUpdate);
+      const gl::ComputePass pass("probe");
       program.use();
       program.set("what", static_cast<int>(what));
       program.set("outerMedium", outerMedium);

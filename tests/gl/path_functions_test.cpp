@@ -117,7 +117,7 @@ class PathFunctionsTest : public SharedProgramsTest {
     in.bindStorage(0);
     out.bindStorage(1);
     {
-      const gl::ComputePass pass("probe", gl::Barrier::bufferUpdate);
+      const gl::ComputePass pass("probe");
       program.use();
       pass.dispatch({static_cast<int>(inputs.size()), 1, 1}, {64, 1, 1});
     }

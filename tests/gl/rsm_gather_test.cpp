@@ -53,7 +53,7 @@ class RsmGatherOnGl : public test::GlTest {
     const gl::Buffer out("irradiances", points.size() * sizeof(glm::vec4), nullptr, gl::Usage::streamRead);
     const gl::Buffer samples("pattern", pattern.size() * sizeof(glm::vec4), pattern.data(), gl::Usage::staticDraw);
     {
-      const gl::ComputePass pass("probe", gl::Barrier::bufferUpdate);
+      const gl::ComputePass pass("probe");
       RsmGather::bindMap(programs().loadCompute("rsm gather probe", "rsm/gather_probe.comp",
                                                 RsmGather::flags(settings, RsmGather::Light::sun)),
                          settings, {{textures[0], textures[1], textures[2], static_cast<float>(map.texelArea())}});

@@ -163,7 +163,7 @@ TEST_F(SidesAndChannels, FormFactorsOfTrianglesThatTheHorizonCuts) {
   in.bindStorage(0);
   out.bindStorage(1);
   {
-    const gl::ComputePass pass("probe", gl::Barrier::bufferUpdate);
+    const gl::ComputePass pass("probe");
     program.use();
     pass.dispatch({static_cast<int>(expected.size()), 1, 1}, {64, 1, 1});
   }

@@ -110,7 +110,7 @@ std::vector<glm::vec3> probeIrradiance(gl::ProgramLibrary& programs, const Light
   const gl::Buffer in("probes", packed.size() * sizeof(glm::vec4), packed.data(), gl::Usage::staticDraw);
   const gl::Buffer out("irradiances", probes.size() * sizeof(glm::vec4), nullptr, gl::Usage::streamRead);
   {
-    const gl::ComputePass pass("probe", gl::Barrier::bufferUpdate);
+    const gl::ComputePass pass("probe");
     programs.loadCompute("lpv probe", "lpv/probe.comp", LightPropagationVolume::lookupFlags(lpv.settings())).use();
     lpv.bindForLookup();
     in.bindStorage(0);
@@ -159,7 +159,7 @@ double filterStep() {
     ramp.upload(gl::Texels::redFloat, kRamp);
     const gl::Buffer read("read", 4096 * sizeof(float), nullptr, gl::Usage::dynamicRead);
     {
-      const gl::ComputePass pass("filter", gl::Barrier::bufferUpdate);
+      const gl::ComputePass pass("filter");
       programs.loadCompute("filter", "filter.comp").use();
       ramp.bind(0);
       read.bindStorage(0);

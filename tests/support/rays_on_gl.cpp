@@ -28,7 +28,7 @@ std::vector<GlHit> trace(gl::ProgramLibrary& programs, const RayScene& scene, st
   hitBuffer.bindStorage(3);
   skipBuffer.bindStorage(4);
   program.set("rayCount", count);
-  const gl::ComputePass pass("trace rays", gl::Barrier::bufferUpdate);
+  const gl::ComputePass pass("trace rays");
   for (int first = 0; first < count; first += kBatch) {
     program.set("firstRay", first);
     pass.dispatch(glm::ivec3(std::min(kBatch, count - first), 1, 1), glm::ivec3(64, 1, 1));
