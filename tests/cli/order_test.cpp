@@ -105,7 +105,7 @@ INSTANTIATE_TEST_SUITE_P(
                                 "--set radiosity.resolution=16"),
                       std::pair("Path", "assets/cornell/cornell.json --technique path --spp 2"),
                       std::pair("Media", "assets/media/smoke/smoke.json --technique path --spp 1")),
-    [](const auto& info) { return info.param.first; });
+    [](const auto& test) { return test.param.first; });
 
 }  // namespace
 }  // namespace lucerna
