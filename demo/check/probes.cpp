@@ -97,14 +97,13 @@ Finding clears(const UnitInput& input) {
   constexpr std::uint32_t kRounds = 100;
   for (const std::uint32_t count : {16u, 4096u, 1u << 20}) {
     gl::Buffer buffer = words("cleared", count);
-    for (const char* after : {"", ", barrier after", ", finished after"}) {
-      const std::string variant = fmt::format("{} words{}", count, after);
+    for (const bool finished : {false, true}) {
+      const std::string variant = fmt::format("{} words{}", count, finished ? ", finished after" : "");
       at(variant);
       for (std::uint32_t round = 0; round < kRounds; ++round) {
         tools.fill(buffer, 1000 + round, count);
         buffer.clear(round);
-        if (after == std::string(", barrier after")) { const gl::ComputePass barrier("barrier", Barrier::all); }
-        if (after == std::string(", finished after")) gl::finish();
+        if (finished) gl::finish();
         tools.count(buffer, round, 0, count);
       }
       add(finding, variant, tools.takeWrong());
@@ -158,7 +157,7 @@ Finding uploads(const UnitInput& input) {
     program.set("count", kCount), program.set("residues", 1u);
     counter.bindStorage(0);
     image.bindImage(0, gl::Access::readWrite);
-    dispatch("count", kCount, Barrier::storage | Barrier::bufferUpdate);
+    dispatch("count", kCount, Barrier::storage | Barrier::image);
     // At most four samples wait in the ring.
     if (round - fetched >= 4) take(true);
     ring.copy(counter);
@@ -187,7 +186,7 @@ Finding indirect(const UnitInput& input) {
     counter.bindStorage(0);
     image.bindImage(0, gl::Access::readWrite);
     {
-      const gl::ComputePass pass("indirect", Barrier::bufferUpdate);
+      const gl::ComputePass pass("indirect", Barrier::storage | Barrier::image);
       pass.dispatchIndirect(tools.groups);
     }
     wrong += counter.readFirst<std::uint32_t>() != kGroup * groups;
@@ -215,7 +214,7 @@ Finding atomics(const UnitInput& input) {
     counter.bindStorage(0);
     image.bindImage(0, gl::Access::readWrite);
     const auto start = Clock::now();
-    dispatch("atomics", kCount, Barrier::all);
+    dispatch("atomics", kCount, Barrier::image | Barrier::textureFetch);
     gl::finish();
     finding.figures[fmt::format("seconds of {} residues", residues)] = secondsSince(start);
     const auto counts = counter.read<std::uint32_t>();
@@ -308,7 +307,7 @@ Finding arithmetic(const UnitInput& input) {
   program.use();
   program.set("zero", 0.0f), program.set("one", 1.0f), program.set("large", 1e20f);
   values.bindStorage(0);
-  dispatch("arithmetic", 1, Barrier::bufferUpdate);
+  dispatch("arithmetic", 1, Barrier::none);
   const auto v = values.read<std::int32_t>();
   const auto real = [&](std::size_t i) { return std::bit_cast<float>(v[i]); };
   Finding finding;
@@ -341,7 +340,7 @@ Finding timers(const UnitInput& input) {
     program.set("count", kCount), program.set("residues", 1u);
     counter.bindStorage(0);
     image.bindImage(0, gl::Access::readWrite);
-    dispatch("atomics", kCount, Barrier::storage);
+    dispatch("atomics", kCount, Barrier::storage | Barrier::image);
   }
   timer.drain();
   timer.collect();

@@ -6,6 +6,7 @@ layout(binding = 0) uniform samplerBuffer source;
 layout(std430, binding = 0) writeonly buffer Next { vec4 next[]; };
 #if WITH_SUM
 layout(binding = 1) uniform samplerBuffer sumBefore;
+// aliased Sums: an invocation reads its own texels before it writes them
 layout(std430, binding = 1) writeonly buffer Sums { vec4 sums[]; };
 #endif
 uniform int count;  // texels per channel
