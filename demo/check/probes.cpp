@@ -305,7 +305,7 @@ Finding arithmetic(const UnitInput& input) {
   const gl::Program& program = session.programs.loadCompute("check arithmetic", "check/arithmetic.comp");
   const gl::Buffer values = words("values", 10);
   program.use();
-  program.set("zero", 0.0f), program.set("one", 1.0f), program.set("large", 1e20f);
+  program.set("zero", 0.0f), program.set("one", 1.0f), program.set("big", 1e20f);
   values.bindStorage(0);
   dispatch("arithmetic", 1, Barrier::none);
   const auto v = values.read<std::int32_t>();

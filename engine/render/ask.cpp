@@ -130,6 +130,7 @@ AskedTerms Renderer::drawAsked(gl::ProgramLibrary& programs, const FrameView& vi
     for (const gl::Program* program : {asked.opaque, asked.masked})
       if (program) program->set("askedPixel", fromBelow);
     gpuScene_->draw(asked, view.drawn());
+    gl::memoryBarrier(gl::Barrier::storage);  // both sides write the terms
   }
   terms.read();
   return terms;

@@ -2,14 +2,14 @@
 #include "lib/angle.glsl"
 layout(local_size_x = 1) in;
 layout(std430, binding = 0) writeonly buffer Values { int values[]; };
-uniform float zero, one, large;  // 0, 1, 1e20: not known to the compiler
+uniform float zero, one, big;  // 0, 1, 1e20: not known to the compiler
 
 void main() {
   float nan = zero / zero;
-  values[0] = int(large);
-  values[1] = int(-large);
-  values[2] = int(nan);
-  values[3] = int(uint(large));
+  values[0] = int(big);  // bounded: not, which is what the probe asks; so are the next three
+  values[1] = int(-big);  // bounded: not
+  values[2] = int(nan);  // bounded: not
+  values[3] = int(uint(big));  // bounded: not
   values[4] = floatBitsToInt(min(nan, one));
   values[5] = floatBitsToInt(max(one, nan));
   values[6] = isnan(nan) ? 1 : 0;

@@ -1,5 +1,6 @@
-// Samples one light, chosen by its share of the scene's power, and a point on it: storage block 4. Flags: NEXT_EVENT, SUN, SPOTS,
-// POINTS, EMISSION, ENVIRONMENT_PICTURE. A constant environment is left to scattered rays, which sample it optimally.
+// Samples one light, chosen by its share of the scene's power, and a point on it: storage block 4. Flags: NEXT_EVENT,
+// SUN, SPOTS, POINTS, EMISSION, ENVIRONMENT_PICTURE. A constant environment is left to scattered rays, which sample it
+// optimally.
 #include "lib/spot.glsl"
 
 struct LightSample {

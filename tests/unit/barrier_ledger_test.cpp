@@ -6,19 +6,21 @@
 namespace lucerna::gl {
 namespace {
 
-using Access = BarrierLedger::Access;
+using MemoryAccess = BarrierLedger::Access;
 const BarrierLedger::Resource kBuffer{BarrierLedger::Kind::buffer, 1}, kTexture{BarrierLedger::Kind::texture, 1};
 
-Access storage(bool reads, bool writes) {
+MemoryAccess storage(bool reads, bool writes) {
   return {kBuffer, GL_SHADER_STORAGE_BARRIER_BIT, reads, writes, true, "storage block B"};
 }
-Access fetch() { return {kBuffer, GL_TEXTURE_FETCH_BARRIER_BIT, true, false, true, "sampler S"}; }
-Access update(bool writes) { return {kBuffer, GL_BUFFER_UPDATE_BARRIER_BIT, !writes, writes, false, "its target"}; }
-Access sampled() { return {kTexture, GL_TEXTURE_FETCH_BARRIER_BIT, true, false, true, "sampler S"}; }
-Access stored() { return {kTexture, GL_SHADER_IMAGE_ACCESS_BARRIER_BIT, false, true, true, "image I"}; }
-Access attached() { return {kTexture, GL_FRAMEBUFFER_BARRIER_BIT, false, true, false, "attachment"}; }
+MemoryAccess fetch() { return {kBuffer, GL_TEXTURE_FETCH_BARRIER_BIT, true, false, true, "sampler S"}; }
+MemoryAccess update(bool writes) {
+  return {kBuffer, GL_BUFFER_UPDATE_BARRIER_BIT, !writes, writes, false, "its target"};
+}
+MemoryAccess sampled() { return {kTexture, GL_TEXTURE_FETCH_BARRIER_BIT, true, false, true, "sampler S"}; }
+MemoryAccess stored() { return {kTexture, GL_SHADER_IMAGE_ACCESS_BARRIER_BIT, false, true, true, "image I"}; }
+MemoryAccess attached() { return {kTexture, GL_FRAMEBUFFER_BARRIER_BIT, false, true, false, "attachment"}; }
 
-std::vector<std::string> after(const std::vector<Access>& accesses, GLbitfield barrier = 0) {
+std::vector<std::string> after(const std::vector<MemoryAccess>& accesses, GLbitfield barrier = 0) {
   BarrierLedger ledger;
   ledger.name(kBuffer, "cells");
   ledger.name(kTexture, "picture");
@@ -31,11 +33,11 @@ std::vector<std::string> after(const std::vector<Access>& accesses, GLbitfield b
 }
 
 TEST(BarrierLedger, EachAccessAfterAShaderWriteNeedsTheBitOfItsKind) {
-  const std::vector<std::pair<Access, GLbitfield>> uses{{storage(true, false), GL_SHADER_STORAGE_BARRIER_BIT},
-                                                        {storage(false, true), GL_SHADER_STORAGE_BARRIER_BIT},
-                                                        {fetch(), GL_TEXTURE_FETCH_BARRIER_BIT},
-                                                        {update(false), GL_BUFFER_UPDATE_BARRIER_BIT},
-                                                        {update(true), GL_BUFFER_UPDATE_BARRIER_BIT}};
+  const std::vector<std::pair<MemoryAccess, GLbitfield>> uses{{storage(true, false), GL_SHADER_STORAGE_BARRIER_BIT},
+                                                              {storage(false, true), GL_SHADER_STORAGE_BARRIER_BIT},
+                                                              {fetch(), GL_TEXTURE_FETCH_BARRIER_BIT},
+                                                              {update(false), GL_BUFFER_UPDATE_BARRIER_BIT},
+                                                              {update(true), GL_BUFFER_UPDATE_BARRIER_BIT}};
   for (const auto& [use, bit] : uses) {
     EXPECT_TRUE(after({storage(false, true), use}, bit).empty()) << nameOfBarrierBit(bit);
     const GLbitfield others = ~bit & ~static_cast<GLbitfield>(GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT);
@@ -55,7 +57,7 @@ TEST(BarrierLedger, AFindingNamesResourceWriterReaderAndBit) {
 }
 
 TEST(BarrierLedger, AShaderWriteWaitsForEveryEarlierAccess) {
-  for (const Access& earlier : {sampled(), attached()}) {
+  for (const MemoryAccess& earlier : {sampled(), attached()}) {
     EXPECT_EQ(after({earlier, stored()}).size(), 1u);
     EXPECT_TRUE(after({earlier, stored()}, GL_SHADER_IMAGE_ACCESS_BARRIER_BIT).empty());
   }
@@ -89,7 +91,7 @@ TEST(BarrierLedger, WhatTheApiOverwritesIsNoLongerTheShaders) {
 
 TEST(BarrierLedger, AnUnorderedBlockIsExemptWithinItsProgramAlone) {
   BarrierLedger ledger;
-  Access chunk = storage(true, true);
+  MemoryAccess chunk = storage(true, true);
   chunk.unordered = true;
   ledger.access("chunk", 7, {chunk});
   ledger.access("chunk", 7, {chunk});
@@ -112,7 +114,7 @@ TEST(BarrierLedger, KnowsWhichBarriersAnAccessDependedOn) {
   ledger.access("writer", 1, {storage(false, true)});
   ledger.barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_COMMAND_BARRIER_BIT, "first");
   ledger.access("reader", 2, {fetch()});
-  ledger.access("writer", 1, {Access(storage(false, true))});
+  ledger.access("writer", 1, {MemoryAccess(storage(false, true))});
   const auto use = [&](const char* site, GLbitfield bit) { return ledger.barriers().at({site, bit}); };
   EXPECT_EQ(use("first", GL_TEXTURE_FETCH_BARRIER_BIT).needed, 1);
   EXPECT_EQ(use("first", GL_COMMAND_BARRIER_BIT).needed, 0);
