@@ -214,8 +214,10 @@ class Check {
         return row;
       }
     // At most half of the part's rest: the other half is for a second look, or for the units that follow.
-    const double limit = std::min(unit.seconds, 0.5 * (until - state_.seconds()));
-    if (limit < kLeast) {
+    // The context, without which a report is of no use, always has its time.
+    const bool isContext = unit.part == "context";
+    const double limit = isContext ? unit.seconds : std::min(unit.seconds, 0.5 * (until - state_.seconds()));
+    if (limit < (unit.part == "sharing" ? kFair : kLeast)) {
       row.text = "no time left";
       return row;
     }
@@ -223,7 +225,10 @@ class Check {
     const ChildEnd end = start(unit, limit, {});
     row.seconds = end.seconds;
     judge(row, end);
-    if (end.timedOut && !end.stuck && !isAlive(end, limit) && !(unit.isLarge && isSoftware()))
+    if (end.timedOut && !end.stuck && limit < std::min(unit.seconds, kFair)) {
+      row.status = Status::notRun;  // --minutes ended it, which says nothing about the GPU
+      row.text = fmt::format("no time left: stopped after {:.1f} s", end.seconds);
+    } else if (end.timedOut && !end.stuck && !isAlive(end, limit) && !(unit.isLarge && isSoftware()))
       lookAgain(unit, until, limit, row);
     state_.store("");
     return row;
@@ -329,6 +334,7 @@ class Check {
   }
 
   static constexpr double kLeast = 1.0;  ///< seconds in which no unit would end
+  static constexpr double kFair = 10.0;  ///< seconds after which a unit that has not ended says something
 
   const CheckOptions& options_;
   fs::path out_;

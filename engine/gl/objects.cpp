@@ -105,6 +105,7 @@ void Buffer::upload(std::size_t offset, std::size_t bytes, const void* data) {
   settle(Barrier::bufferUpdate);
   glBindBuffer(GL_COPY_WRITE_BUFFER, id());
   glBufferSubData(GL_COPY_WRITE_BUFFER, static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes), data);
+  if (shadersMayWrite_) waitOutFill();  // shaders may still count in it
 }
 
 void Buffer::clear(GLuint value) {

@@ -130,6 +130,14 @@ TEST_F(Check, FaultsAreRowsAndTheRestGoesOn) {
   }
 }
 
+TEST_F(Check, TooLittleTimeIsNoFault) {
+  const RunResult result = check("--only sharing,error --minutes 0.1");
+  EXPECT_EQ(result.exitCode, 0) << result.out << result.err;
+  expectRow("context", "limits", "right", "OpenGL");
+  expectRow("sharing", "four-processes", "not run", "no time left");
+  expectRow("error", "cornell", "not run", "no time left");
+}
+
 // A shader that takes minutes (llvmpipe leaves loops after 65,535 turns): the row names the pass.
 TEST_F(Check, AHangNamesItsPass) {
   const FaultyShaders shaders;
