@@ -63,8 +63,7 @@ std::vector<Rung> lpvLadder(bool shrink) {
     if (!shrink || size < 512) gather("map", {"lpv.bounces=1", fmt::format("rsm.size={}", size)});
   for (int cells : {8, 16, 32})
     if (!shrink || cells < 32) gather("bounce cells", {"lpv.bounces=all", fmt::format("lpv.bounce-cells={}", cells)});
-  for (const char* visibility : {"voxels", "none"})
-    if (!shrink) gather("visibility", {"lpv.bounces=1", fmt::format("lpv.visibility={}", visibility)});
+  if (!shrink) gather("visibility", {"lpv.bounces=1", "lpv.visibility=none"});
   // Paths to receivers: all light, except in the ladder of bounces itself.
   const auto rays = [&](const char* series, std::string setting, bool allBounces = true) {
     std::vector<std::string> settings{"lpv.transport=rays", std::move(setting)};

@@ -423,10 +423,7 @@ Tables measureLpvTables(const TablesInput& input) {
   const PublishedRow& usual = kPublishedTimes[1];  // 3 x 32^3, 8 iterations, blocking
   const Config published = config(usual, LpvFill::layered, LpvPropagate::layered),
                best = config(usual, bestFill, LpvPropagate::compute);
-  const Config slices =
-      config(usual, LpvFill::layered, LpvPropagate::slices);  // a faster variant of the published pass
   want(published);
-  want(slices);
 
   // One unit per configuration, with the map it is filled from; copying and clearing are the last.
   const PartFolder part(
@@ -540,8 +537,7 @@ Tables measureLpvTables(const TablesInput& input) {
   }
 
   // The summary.
-  const std::vector<double> publishedTotal = bench.total(published), bestTotal = bench.total(best),
-                            slicesTotal = bench.total(slices);
+  const std::vector<double> publishedTotal = bench.total(published), bestTotal = bench.total(best);
   const std::vector<double>&copied = bench.samples("copy"), &copiedAndSummed = bench.samples("copy and sum");
   const double propagation = median(bench.propagation(best));
   const std::string paths = fmt::format("{}/compute", nameOf(bestFill));
@@ -549,25 +545,18 @@ Tables measureLpvTables(const TablesInput& input) {
       "Speed: injection, geometry volume and propagation together; {} x {}^3, 8 iterations, RSM 256, our settings, "
       "same answer\n"
       "  layered/layered   {}\n  {:<18}{}\n  {:.2f} times as fast\n"
-      "  layered/slices    {}: the published pass with a triangle a slice in place of a point a cell; {:.2f} times as "
-      "fast as that\n"
       "Bound: propagation, {}: {}\n"
       "  reading and writing the grids once an iteration     {}: {:.2f} of it\n"
       "  the same, with the sum that they are added to       {}: {:.2f} of it\n",
       usual.grids, usual.cells / shrink, spreadText(publishedTotal), paths, spreadText(bestTotal),
-      median(publishedTotal) / median(bestTotal), spreadText(slicesTotal), median(slicesTotal) / median(bestTotal),
-      paths, spreadText(bench.propagation(best)), spreadText(copied), propagation / median(copied),
-      spreadText(copiedAndSummed), propagation / median(copiedAndSummed));
+      median(publishedTotal) / median(bestTotal), paths, spreadText(bench.propagation(best)), spreadText(copied),
+      propagation / median(copied), spreadText(copiedAndSummed), propagation / median(copiedAndSummed));
   tables.json["frames"] = frames;
-  tables.json["speed"] = {{"cells", usual.cells / shrink},
-                          {"grids", usual.grids},
-                          {"iterations", usual.iterations},
-                          {"rsm", usual.rsmSize},
-                          {"best_fill", nameOf(bestFill)},
-                          {"published_paths_ms", samplesJson(publishedTotal)},
-                          {"best_paths_ms", samplesJson(bestTotal)},
-                          {"slices_ms", samplesJson(slicesTotal)},
-                          {"speedup", median(publishedTotal) / median(bestTotal)}};
+  tables.json["speed"] = {
+      {"cells", usual.cells / shrink},           {"grids", usual.grids},
+      {"iterations", usual.iterations},          {"rsm", usual.rsmSize},
+      {"best_fill", nameOf(bestFill)},           {"published_paths_ms", samplesJson(publishedTotal)},
+      {"best_paths_ms", samplesJson(bestTotal)}, {"speedup", median(publishedTotal) / median(bestTotal)}};
   tables.json["bound"] = {{"propagation_ms", samplesJson(bench.propagation(best))},
                           {"copy_ms", samplesJson(copied)},
                           {"copy_and_sum_ms", samplesJson(copiedAndSummed)},

@@ -313,15 +313,13 @@ void showStages(Ui& ui, WalkState& s) {
   if (menu(ui, "in the scene", glyphs, kGlyphNames)) s.glyphs = static_cast<Glyphs>(glyphs);
   explain(
       "As lines: the light in the brightest cells of a propagated volume by direction (its intensity, the largest half "
-      "a cell long), the corners of cells that block light, the voxels of lpv.visibility about the middle of the "
-      "picture, or receivers: disks on their surfaces, in the colour of their irradiance.");
+      "a cell long), the corners of cells that block light, or receivers: disks on their surfaces, in "
+      "the colour of their irradiance.");
   if (s.glyphs == Glyphs::none) return;
-  if (s.glyphs != Glyphs::voxels) {
-    const int last = side.renderer->settings().lpv.cascades.cascades - 1;
-    s.glyphCascade = std::clamp(s.glyphCascade, 0, last);
-    ImGui::SliderInt("cascade", &s.glyphCascade, 0, last);
-    ui.note("cascade");
-  }
+  const int last = side.renderer->settings().lpv.cascades.cascades - 1;
+  s.glyphCascade = std::clamp(s.glyphCascade, 0, last);
+  ImGui::SliderInt("cascade", &s.glyphCascade, 0, last);
+  ui.note("cascade");
   ImGui::SliderInt("at most", &s.glyphMost, 10, 5000, "%d", ImGuiSliderFlags_Logarithmic);
   ui.note("at most");
   if (s.glyphs == Glyphs::receivers && !side.renderer->receivers())

@@ -2,7 +2,6 @@
 
 #include "base/statistics.hpp"
 #include "gl/pass.hpp"
-#include "lpv/surface_voxels.hpp"
 #include "scene/place.hpp"
 
 #include <glm/gtc/matrix_inverse.hpp>
@@ -221,28 +220,6 @@ std::vector<gl::Lines::Line> geometryOf(const LightPropagationVolume& volume, co
   return lines;
 }
 
-/// The voxels of lpv.visibility=voxels, nearest to the middle of the picture first.
-std::vector<gl::Lines::Line> voxelsOf(const Scene& scene, int across, const glm::dvec3& origin, const Camera& camera,
-                                      int most) {
-  const SurfaceVoxels voxels = surfaceVoxels(scene, across);
-  const glm::ivec3 count = SurfaceVoxels::kBrick * voxels.bricks;
-  std::vector<std::pair<double, glm::dvec3>> set;
-  for (int z = 0; z < count.z; ++z)
-    for (int y = 0; y < count.y; ++y)
-      for (int x = 0; x < count.x; ++x) {
-        if (!voxels.isSet({x, y, z})) continue;
-        const glm::dvec3 low = voxels.minimum + voxels.size * glm::dvec3(x, y, z);
-        const double ahead = glm::dot(low - camera.position, camera.direction);
-        if (ahead > 0.0) set.emplace_back(glm::length(low - camera.position - ahead * camera.direction) / ahead, low);
-      }
-  std::ranges::sort(set, [](const auto& a, const auto& b) { return a.first < b.first; });
-  if (set.size() > static_cast<std::size_t>(most)) set.resize(static_cast<std::size_t>(most));
-  std::vector<gl::Lines::Line> lines;
-  for (const auto& [distance, low] : set)
-    addBox(lines, glm::vec3(low - origin), glm::vec3(low + voxels.size - origin), {1.0f, 0.7f, 0.2f, 0.6f});
-  return lines;
-}
-
 /// A disk of 12 sectors, with a dark rim so that it is seen on a surface of its own colour.
 void addDisk(std::vector<gl::Lines::Line>& lines, const glm::vec3& centre, const glm::vec3& normal, float radius,
              const glm::vec3& color) {
@@ -303,7 +280,6 @@ std::vector<gl::Lines::Line> receiversOf(const LpvReceivers& receivers, const Re
 std::vector<gl::Lines::Line> glyphsOf(Glyphs glyphs, const Renderer& renderer, const Scene& scene, const Camera& camera,
                                       int cascade, int most) {
   const RenderSettings& settings = renderer.settings();
-  if (glyphs == Glyphs::voxels) return voxelsOf(scene, settings.lpv.voxels, renderer.origin(), camera, most);
   const LightPropagationVolume* volume = renderer.lpv();
   if (glyphs == Glyphs::none || (glyphs == Glyphs::receivers ? !renderer.receivers() : !volume)) return {};
   // Place them as render/lpv_frame.cpp and, but for the blend, render/receivers_frame.cpp do.

@@ -1,6 +1,6 @@
 // Debug views that no technique draws. Two count for each pixel: the surfaces in it (overdraw) and the nodes of the
 // hierarchy that its ray visits. Three are drawn in the scene: the light in a propagation volume's cells as lobes,
-// voxels as boxes, receivers as disks. Their programs and buffers are made at first use and dropped with the view.
+// receivers as disks. Their programs and buffers are made at first use and dropped with the view.
 #pragma once
 
 #include "forward/gpu_scene.hpp"
@@ -50,9 +50,8 @@ class CountViews {
 };
 
 /// The views that are drawn in the scene as lines.
-enum class Glyphs { none, lobes, geometry, voxels, receivers };
-constexpr std::array<std::string_view, 5> kGlyphNames{"nothing", "lobes of cells", "geometry volume",
-                                                      "visibility voxels", "receivers"};
+enum class Glyphs { none, lobes, geometry, receivers };
+constexpr std::array<std::string_view, 4> kGlyphNames{"nothing", "lobes of cells", "geometry volume", "receivers"};
 
 /// Lines relative to the renderer's origin(), empty if its technique has nothing of the kind. Lobes show intensity by
 /// direction in the `most` brightest cells of a cascade; the largest is half a cell long. Receivers show at most `most`

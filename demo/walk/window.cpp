@@ -498,7 +498,7 @@ void WalkWindow::askPixel(const Compare::Inputs& inputs) {
   }
 }
 
-// Rebuilt when the camera or their source has changed. Voxels are slow to list and stay as they were chosen.
+// Rebuilt when the camera or their source has changed.
 void WalkWindow::drawGlyphs(const Compare::Inputs& inputs) {
   const SideState& side = state_.side();
   if (state_.glyphs == Glyphs::none || !side.renderer || side.shows == Shows::picture) return;
@@ -506,7 +506,7 @@ void WalkWindow::drawGlyphs(const Compare::Inputs& inputs) {
   const LpvReceivers* receivers = side.renderer->receivers();  // their light changes from frame to frame
   const std::string are =
       fmt::format("{} {} {} {} {} {} {}", static_cast<int>(state_.glyphs), side.builtAs, state_.glyphCascade,
-                  state_.glyphMost, state_.glyphs == Glyphs::voxels ? "" : cameraText(camera), state_.shown,
+                  state_.glyphMost, cameraText(camera), state_.shown,
                   state_.glyphs == Glyphs::receivers && receivers ? receivers->frame() : 0);
   if (are != glyphsAre_)
     glyphs_ = glyphsOf(state_.glyphs, *side.renderer, *state_.scene, camera, state_.glyphCascade, state_.glyphMost);

@@ -50,7 +50,7 @@ LpvGeometryVolume::LpvGeometryVolume(gl::ProgramLibrary& programs, const gl::Cap
   // Merging several views, and the albedo for reflection, need blending, and glossy reflection the texture, whatever
   // the fill.
   if (settings.fill != LpvFill::layered && !countsHalfFloats(settings, capabilities) && !settings.mergeViews &&
-      !reflects && !deviations.surfelArea && settings.glossy != LpvGlossy::march) {
+      !reflects && !deviations.surfelArea && !settings.glossy) {
     const bool fixed = settings.fill == LpvFill::fixed;
     const gl::ShaderFlags fill{{"FILL_FIXED", fixed}, {"FILL_FLOAT", !fixed}, {"TRUNCATE", deviations.truncate}};
     count_ = &programs.loadCompute("lpv count surfels", "lpv/count_surfels.comp",

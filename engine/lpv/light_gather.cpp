@@ -6,7 +6,6 @@
 #include "lpv/bounce_points.hpp"
 #include "lpv/emission_points.hpp"
 #include "lpv/grid.hpp"
-#include "lpv/surface_voxels.hpp"
 #include "rays/light_table.hpp"
 #include "rsm/rsm_gather.hpp"
 #include "scene/texture_mean.hpp"
@@ -22,7 +21,7 @@ namespace lucerna {
 namespace {
 
 constexpr GLuint kReceiversBuffer = 0, kListBuffer = 1, kLinksBuffer = 6, kBouncedBuffer = 7;  // storage blocks
-constexpr GLuint kVoxelsUnit = 6, kTreeUnit = 7, kSlotsUnit = 8, kLightUnit = 9;
+constexpr GLuint kTreeUnit = 7, kSlotsUnit = 8, kLightUnit = 9;
 constexpr GLuint kPlacesUnit = 13, kMapUnits = 10;  // with rays: the texture atlas has the usual ones
 constexpr std::size_t kLinkBytes = 12;  // of a ray: a point's number and the albedo there
 constexpr int kMostBounces = 64;
@@ -130,13 +129,6 @@ LightGather::LightGather(gl::ProgramLibrary& programs, const gl::Capabilities& c
   if (!(sun_ || lamp_ || emission_)) return;
   const glm::dvec3 extent = scene.bounds.extent();
   rayEnd_ = static_cast<float>(1e-4 * std::max({extent.x, extent.y, extent.z}));
-  if (visibility_ != LpvVisibility::voxels) return;
-  const SurfaceVoxels surfaces = surfaceVoxels(scene, settings.voxels);
-  voxelMinimum_ = glm::vec3(surfaces.minimum - origin);
-  voxelSize_ = static_cast<float>(surfaces.size);
-  voxelBricks_ = surfaces.bricks;
-  voxels_ = gl::BufferTexture("lpv voxels", gl::Format::rg32ui, surfaces.bits.size() * sizeof(glm::uvec2),
-                              surfaces.bits.data());
 }
 
 void LightGather::makeEmission(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, const Scene& scene,
@@ -222,12 +214,6 @@ void LightGather::gatherTree(const gl::Program& program, const ReflectiveShadowM
   if (&program == sun_ && visibility_ == LpvVisibility::rays)
     map.position.bind(kMapUnits), map.normal.bind(kMapUnits + 1), map.flux.bind(kMapUnits + 2);
   else if (&program == sun_) map.bind();
-  if (visibility_ == LpvVisibility::voxels) {
-    program.set("voxelMinimum", voxelMinimum_);
-    program.set("voxelSize", voxelSize_);
-    program.set("voxelBrickCount", voxelBricks_);
-    voxels_.bind(kVoxelsUnit);
-  }
   tree.bind(program, kTreeUnit);
   targets.dispatch(pass, program, turnsOfLane(tree.depth(), tree.top(), tree.layers()));
 }
@@ -310,7 +296,7 @@ void LightGather::gather(const std::vector<ReflectiveShadowMap::Outputs>& maps, 
 }
 
 std::size_t LightGather::gpuBytes() const {
-  std::size_t bytes = voxels_.bytes() + emissionPosition_.bytes() + emissionNormal_.bytes() + emissionFlux_.bytes() +
+  std::size_t bytes = emissionPosition_.bytes() + emissionNormal_.bytes() + emissionFlux_.bytes() +
                       (emissionTree_ ? emissionTree_->gpuBytes() : 0) + pointData_.bytes() + list_.bytes() +
                       links_.bytes() + slots_.bytes() + places_.bytes() + light_[0].bytes() + light_[1].bytes();
   for (const LightTree& tree : trees_) bytes += tree.gpuBytes();

@@ -77,10 +77,6 @@ class LightGather {
   bool probed_ = false;  ///< points in gaps have been taken out
   const gl::Program *sun_ = nullptr, *lamp_ = nullptr, *emission_ = nullptr, *around_ = nullptr;
   std::vector<LightTree> trees_;  ///< one per map
-  glm::vec3 voxelMinimum_{0.0f};  ///< in the frame's coordinates
-  float voxelSize_ = 1.0f;
-  glm::ivec3 voxelBricks_{1};
-  gl::BufferTexture voxels_;
   float rayEnd_ = 0.0f;  ///< by which a ray ends before a map's point, scene units
   // Emissive surfaces.
   gl::Texture emissionPosition_, emissionNormal_, emissionFlux_;

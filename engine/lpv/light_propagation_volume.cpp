@@ -21,10 +21,10 @@ LpvSettings checked(const LpvSettings& settings, const gl::Capabilities& capabil
     throwBadInput(
         "lpv.bounces={}: the geometry volume reflects light; this needs two iterations and lpv.blocking other than off",
         settings.bounces);
-  if (settings.glossy == LpvGlossy::march && !settings.isBlocked())
+  if (settings.glossy && !settings.isBlocked())
     throwBadInput(
-        "lpv.glossy=march: the geometry volume ends the march; this needs two iterations and lpv.blocking other than "
-        "off (lpv.glossy=mean does not)");
+        "lpv.glossy=on: the geometry volume ends reflected rays; this needs two iterations and lpv.blocking other than "
+        "off");
   return settings.resolved();
 }
 
@@ -94,7 +94,7 @@ shared::LpvConstants lpvConstants(const LpvSettings& settings, const std::vector
     target.blendHalf = coarsest ? 1e30f : static_cast<float>(half);
     if (!coarsest && target.blendHalf <= 0.0f) target.blendHalf = 1e-30f;  // too few cells to blend: never used
   }
-  constants.shape = {cells, settings.cascades.cascades, settings.glossyCells(), 0};
+  constants.shape = {cells, settings.cascades.cascades, settings.glossySteps, 0};
   constants.referenceIrradiance = referenceIrradiance;
   constants.blendBand = settings.blendBand;
   constants.lookupOffset = offset;
@@ -160,7 +160,7 @@ void LightPropagationVolume::reflect(bool first) {
 void LightPropagationVolume::bindForLookup() const {
   constants_.bindUniform(BLOCK_LPV);
   for (GLuint channel = 0; channel < 3; ++channel) result()[channel].bind(UNIT_LPV_RED + channel);
-  if (settings_.glossy == LpvGlossy::march) geometry_->potential().bind(UNIT_LPV_GEOMETRY);
+  if (settings_.glossy) geometry_->potential().bind(UNIT_LPV_GEOMETRY);
 }
 
 std::vector<AskedPart> LightPropagationVolume::ask(gl::ProgramLibrary& programs, const glm::vec3& position,

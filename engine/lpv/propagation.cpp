@@ -119,7 +119,6 @@ LpvLayeredPropagation::LpvLayeredPropagation(gl::ProgramLibrary& programs, const
   const auto load = [&](bool blocked, bool withInjected) {
     return &programs.loadRaster("lpv propagate layered", "lpv/propagate_layered.vert", "lpv/propagate_layered.frag",
                                 with({{"LPV_FULL_FLOAT", settings.storage == LpvSettings::Storage::full},
-                                      {"POINTS", settings.propagate == LpvPropagate::layered},
                                       {"BLOCKED", blocked},
                                       {"BEGINS_WITH_INJECTED", withInjected}},
                                      grid.kernel),
@@ -164,8 +163,7 @@ void LpvLayeredPropagation::run(const LpvVolume& source, const LpvGeometryVolume
       program.set("cascade", k);
       program.set("firstLayer", k * cells);
       program.set("cells", cells);
-      if (settings_.propagate == LpvPropagate::layered) gl::drawPoints(cells * cells * cells);
-      else gl::drawTriangles(3, cells);
+      gl::drawPoints(cells * cells * cells);
     }
     front = &fronts_[next];
   }

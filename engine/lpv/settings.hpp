@@ -20,9 +20,9 @@ enum class LpvFill { layered, atomic, fixed };
 constexpr std::array<std::string_view, 3> namesOf(LpvFill) { return {"layered", "atomic", "fixed"}; }
 
 /// `compute`: all cascades in one dispatch per step. `layered`: as published, one pass per step and cascade with one
-/// point per cell. `slices`: the same pass with one triangle per slice instead.
-enum class LpvPropagate { compute, layered, slices };
-constexpr std::array<std::string_view, 3> namesOf(LpvPropagate) { return {"compute", "layered", "slices"}; }
+/// point per cell.
+enum class LpvPropagate { compute, layered };
+constexpr std::array<std::string_view, 2> namesOf(LpvPropagate) { return {"compute", "layered"}; }
 
 /// How irradiance at a surface follows from the propagated coefficients. `flux`: what the propagation kernel itself
 /// would send through a face there. `published`: the light of one source half a cell away [Kaplanyan2010], 1.91 times
@@ -36,19 +36,13 @@ constexpr std::array<std::string_view, 2> namesOf(LpvLookup) { return {"flux", "
 enum class LpvTransport { propagate, gather, rays };
 constexpr std::array<std::string_view, 3> namesOf(LpvTransport) { return {"propagate", "gather", "rays"}; }
 
-/// What blocks light gathered from maps and emissive surfaces: nothing, the voxels that contain surfaces, or the
-/// surfaces themselves.
-enum class LpvVisibility { none, voxels, rays };
-constexpr std::array<std::string_view, 3> namesOf(LpvVisibility) { return {"none", "voxels", "rays"}; }
+/// What blocks light gathered from maps and emissive surfaces.
+enum class LpvVisibility { none, rays };
+constexpr std::array<std::string_view, 2> namesOf(LpvVisibility) { return {"none", "rays"}; }
 
 /// Whose surfels fill the geometry volume: those in the lights' maps, those seen by the camera, or both.
 enum class LpvSurfels { rsm, camera, both };
 constexpr std::array<std::string_view, 3> namesOf(LpvSurfels) { return {"rsm", "camera", "both"}; }
-
-/// Where glossy reflection reads the volume: `mean` over the next cells along the reflected ray [Kaplanyan2010];
-/// `march` along it to the first surfels of the geometry volume.
-enum class LpvGlossy { off, mean, march };
-constexpr std::array<std::string_view, 3> namesOf(LpvGlossy) { return {"off", "mean", "march"}; }
 
 struct LpvSettings {
   /// Storage of the result, rounded to nearest; everything before it is in 32 bits. `full` (32-bit) is for tests.
@@ -92,14 +86,13 @@ struct LpvSettings {
                     ///< others kAllBounces too
   bool shafts = false;  ///< light shafts in the scene's haze (light_shafts.hpp)
   int shaftSteps = 64;  ///< samples along a view ray
-  LpvGlossy glossy = LpvGlossy::off;  ///< reflection of the volume's light by glossy materials (glossy_lobes.hpp)
-  int glossySteps = 0;  ///< cells along the reflected ray; 0: 4 for the mean, as published, 64 for the march
+  bool glossy = false;  ///< reflection of the volume's light by glossy materials (glossy_lobes.hpp)
+  int glossySteps = 64;  ///< cells along a reflected ray, at most
   float blendBand = 0.25f;  ///< fraction of a cascade's half extent over which it fades into the next
   int handOver = 0;  ///< steps after which a finer cascade takes light from the coarser one; 0: lpvHandOverStep()
   std::optional<float> lookupOffset;  ///< cells along the normal by which a point is moved before the lookup; not
                                       ///< set: the lookup's default
   LpvVisibility visibility = LpvVisibility::rays;  ///< for LpvTransport::gather
-  int voxels = 256;  ///< likewise: along the longest side of the scene
   int bounceCells = 16;  ///< likewise: of the points that keep light of further bounces
   int rays = 16;  ///< for LpvTransport::rays: paths per receiver and frame, 1, 2, 4 ... 64
   int leastRays = 64;  ///< likewise: minimum number of paths of a receiver in its first frame
@@ -119,7 +112,6 @@ struct LpvSettings {
   /// In cells along the normal.
   float offset() const { return lookupOffset.value_or(lookupUsed() == LpvLookup::published ? 0.5f : 0.0f); }
   bool reflects() const { return bounces > 1; }
-  int glossyCells() const { return glossySteps > 0 ? glossySteps : glossy == LpvGlossy::mean ? 4 : 64; }
   /// Propagation steps that are run.
   int steps() const { return std::max(iterations - (deviations.fewerSteps ? 1 : 0), 0); }
   /// Whether any step is blocked; the first is not by default.

@@ -14,7 +14,7 @@ bool takesCameraSurfels(const LpvSettings& volume) {
 
 LpvSettings volumeSettings(const RenderSettings& settings, std::size_t lightMaps, bool isGlossy) {
   LpvSettings volume = settings.lpv;
-  if (!isGlossy) volume.glossy = LpvGlossy::off;
+  if (!isGlossy) volume.glossy = false;
   const std::size_t views =
       (volume.surfels == LpvSurfels::camera ? 0 : lightMaps) + (takesCameraSurfels(volume) ? 1 : 0);
   volume.mergeViews = volume.blocking && views > 1;
@@ -38,7 +38,7 @@ LpvFrame::LpvFrame(const FrameParts& parts)
       cameraMap_(cameraMap(parts)),
       volume_(parts.programs, parts.context.capabilities(),
               volumeSettings(parts.settings, maps_.count(), parts.needs.specular)) {
-  if (parts.settings.lpv.glossy != LpvGlossy::off && parts.needs.specular) lobes_.emplace();
+  if (parts.settings.lpv.glossy && parts.needs.specular) lobes_.emplace();
 }
 
 // Treats the camera as a lamp without light: the map's texels hold position, normal and area of the visible surfaces.
@@ -101,8 +101,7 @@ void LpvFrame::forget() {
 
 gl::ShaderFlags LpvFrame::shadingFlags() const {
   gl::ShaderFlags flags = LightPropagationVolume::lookupFlags(parts_.settings.lpv);
-  const bool marches = isGlossy() && parts_.settings.lpv.glossy == LpvGlossy::march;
-  flags.insert(flags.begin(), {{"PROPAGATED", 1}, {"GLOSSY", isGlossy()}, {"GLOSSY_MARCH", marches}});
+  flags.insert(flags.begin(), {{"PROPAGATED", 1}, {"GLOSSY", isGlossy()}});
   return flags;
 }
 

@@ -158,7 +158,7 @@ SurfacePrograms Renderer::surfacePrograms(gl::ProgramLibrary& programs, bool ask
       if constexpr (requires { technique.shadingFlags(); }) own = technique.shadingFlags();
     });
     flags.insert(flags.end(), own.begin(), own.end());
-    for (const char* flag : {"PROPAGATED", "RECEIVED", "GATHERED", "SHOW_REFUSED", "GLOSSY", "GLOSSY_MARCH"})
+    for (const char* flag : {"PROPAGATED", "RECEIVED", "GATHERED", "SHOW_REFUSED", "GLOSSY"})
       if (std::none_of(own.begin(), own.end(), [&](const auto& o) { return o.first == flag; }))
         flags.push_back({flag, 0});
     return &programs.loadRaster(name, "forward/surface.vert", "forward/surface.frag", flags);
@@ -343,7 +343,7 @@ double Renderer::turnsOfSurface() const {
   const int suns = sunCascades_ ? settings_.sunCascades.cascades : static_cast<int>(shadowMap_.has_value());
   const double lamps = localLights_ ? static_cast<double>(spots_.size() + points_.size()) : 0.0;
   constexpr double kTurnsOfCell = 8.0;
-  const double glossy = lpv_ && lpv_->isGlossy() ? LPV_GLOSSY_RAYS * kTurnsOfCell * settings_.lpv.glossyCells() : 0.0;
+  const double glossy = lpv_ && lpv_->isGlossy() ? LPV_GLOSSY_RAYS * kTurnsOfCell * settings_.lpv.glossySteps : 0.0;
   return kTurnsOfMaterial + kTurnsOfSun * suns + kTurnsOfLamp * lamps + (lpv_ || receivers_ ? kTurnsOfIndirect : 0.0) +
          glossy;
 }

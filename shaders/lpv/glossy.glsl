@@ -5,13 +5,11 @@
 //   Y00 rho l0 - Y1 <l1, m>,  rho = integral of f <n, i>,  m = integral of f <n, i> i,
 // so all that a lobe needs is its reflectance rho and its moment m (lpv/glossy_lobes.hpp has the table). f: GGX with
 // Schlick's Fresnel term about `specular` [Walter2007]; alpha from the exponent, 2 / alpha^2 - 2.
-// Where L is read (a constant radiance is always reflected as rho L):
-// - GLOSSY_MARCH: radiance does not change along a ray, so L is what the first surface along a ray of the lobe sends.
-//   The march ends there: surfels of area A cover A cos / s^2 of a ray's cross section in a cell, which band 1 of their
-//   potential A / s^2 lobe(n) holds as A / (2 s^2) cos. A ray meets a layer of them 1 / cos times, so a closed surface
-//   covers all of it. Light is read once, a cell before half of the ray is covered: behind a surface it is dark, and
-//   software renderers would run a lookup in every step.
-// - otherwise the mean of the next cells, weighted by 1 / distance^2 [Kaplanyan2010].
+// L is what the first surface along a ray of the lobe sends, as radiance does not change along a ray (a constant
+// radiance is always reflected as rho L). A march finds it: surfels of area A cover A cos / s^2 of a ray's cross
+// section in a cell, which band 1 of their potential A / s^2 lobe(n) holds as A / (2 s^2) cos. A ray meets a layer of
+// them 1 / cos times, so a closed surface covers all of it. Light is read once, a cell before half of the ray is
+// covered: behind a surface it is dark, and software renderers would run a lookup in every step.
 // Bound: rho takes at most what the diffuse reflection leaves, 1 - albedo.
 #include "lpv/radiance.glsl"
 layout(binding = UNIT_LPV_LOBES) uniform sampler2D lpvLobes;
@@ -35,7 +33,6 @@ float lpvCellSizeAt(vec3 position) {
   return size;
 }
 
-#if GLOSSY_MARCH
 layout(binding = UNIT_LPV_GEOMETRY) uniform sampler3D lpvGeometry;
 
 // Part of a ray's cross section that surfels facing its origin cover in a cell.
@@ -66,18 +63,6 @@ mat3x4 lpvLightAlong(vec3 position, vec3 direction) {
   }
   return lpvRadiance(at);
 }
-#else
-mat3x4 lpvLightAlong(vec3 position, vec3 direction) {
-  mat3x4 light = mat3x4(0.0);
-  float size = lpvCellSizeAt(position), weights = 0.0;
-  for (int i = 1; i <= lpv.shape.z; ++i) {
-    float weight = 1.0 / float(i * i);
-    light += weight * lpvRadiance(position + float(i) * size * direction);
-    weights += weight;
-  }
-  return light / weights;
-}
-#endif
 
 // Radiance reflected towards the camera. normal: on the camera's side. specular: reflectance at normal incidence.
 vec3 lpvGlossy(vec3 position, vec3 normal, vec3 toCamera, vec3 albedo, vec3 specular, float shininess) {

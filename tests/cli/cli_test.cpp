@@ -254,7 +254,7 @@ TEST_F(CommandLine, HowLightIsTransportedAndLookedUpIsChosenByName) {
   EXPECT_FALSE(json("lpv.json").contains("lpv"));
   EXPECT_EQ(mean(""), mean(" --set lpv.transport=rays --set lpv.bounces=all"));
   EXPECT_TRUE(json("lpv.json").contains("lpv"));
-  EXPECT_EQ(mean(" --set lpv.voxels=256"), mean(" --set lpv.transport=gather"));
+  EXPECT_EQ(mean(" --set lpv.bounce-cells=16"), mean(" --set lpv.transport=gather"));
   EXPECT_GT(mean(" --set lpv.lookup=published"), 1.2 * flux);
   EXPECT_EQ(mean(" --set lpv.lookup=published"), mean(" --set lpv.lookup=published --set lpv.lookup-offset=0.5"));
   for (const char* bounces : {"1", "all"}) {

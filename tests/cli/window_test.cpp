@@ -189,8 +189,8 @@ TEST_F(Window, TheCursorMeansThePixelThatItIsIn) {
   EXPECT_NE(magnified("corner.png"), magnified("below.png"));
 }
 
-// Counts a pixel instead of the picture, and lobes, boxes and voxels in the scene. The short form has one that counts
-// and two that are drawn into the scene.
+// Counts a pixel instead of the picture, and lobes and boxes in the scene. The short form has one that counts
+// and one that is drawn into the scene.
 TEST_F(Window, DebugViewsOfTheSceneItself) {
   const bool isLong = lucerna::test::longTests();
   const std::string first =
@@ -205,9 +205,7 @@ TEST_F(Window, DebugViewsOfTheSceneItself) {
   const std::string geometry =
       "15 touch Debug view/cascade\n15 touch Debug view/at most\n16 touch Debug view/in the scene\n"
       "17 touch Debug view/in the scene: geometry volume\n18 save geometry.png\n";
-  const std::string voxels =
-      "19 touch Debug view/in the scene\n20 touch Debug view/in the scene: visibility voxels\n21 save voxels.png\n";
-  write("input.txt", first + (isLong ? visits : "") + lobes + (isLong ? geometry : "") + voxels);
+  write("input.txt", first + (isLong ? visits : "") + lobes + (isLong ? geometry : ""));
   const RunResult result =
       play(path("input.txt"), "--technique lpv --set lpv.transport=propagate --set lpv.blocking=on", "", "700x400");
   ASSERT_EQ(result.exitCode, 0) << result.err;
@@ -224,7 +222,7 @@ TEST_F(Window, DebugViewsOfTheSceneItself) {
     return part;
   };
   const auto frame = pixels("frame.png");
-  std::vector<const char*> names{"overdraw.png", "lobes.png", "voxels.png"};
+  std::vector<const char*> names{"overdraw.png", "lobes.png"};
   if (isLong) names.insert(names.end(), {"visits.png", "geometry.png"});
   for (const char* name : names) EXPECT_NE(pixels(name), frame) << name;
 }

@@ -57,9 +57,9 @@ struct GlossyProbe {
 struct SmallVolume {
   int cells = 4;
   double cellSize = 0.5, irradiance = 3.0;
-  int steps = 4;
+  int steps = 1;
   std::vector<glm::vec4> texels[3];
-  std::optional<twin::Volume> geometry;  ///< for the march; its samples lie on the cells' corners
+  std::optional<twin::Volume> geometry;  ///< its samples lie on the cells' corners; none: empty
   glm::dvec4 at(int channel, const glm::ivec3& cell) const {
     if (glm::any(glm::lessThan(cell, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(cell, glm::ivec3(cells))))
       return glm::dvec4(0.0);
@@ -77,20 +77,12 @@ struct SmallVolume {
   }
 };
 
-/// Light along a direction by the twin: the mean of the next cells, or the march to surfels of the geometry.
+/// Light along a direction by the twin: the march to surfels of the geometry.
 glm::dvec4 lightAlong(const SmallVolume& volume, int channel, const glm::dvec3& position, const glm::dvec3& towards) {
-  glm::dvec4 light(0.0);
-  if (!volume.geometry) {
-    double weights = 0.0;
-    for (int k = 1; k <= volume.steps; ++k) {
-      light += volume.trilinear(channel, position + k * volume.cellSize * towards) / static_cast<double>(k * k);
-      weights += 1.0 / (k * k);
-    }
-    return light / weights;
-  }
   double left = 1.0;
   int k = 1;
   for (; k < volume.steps; ++k) {
+    if (!volume.geometry) continue;
     const twin::Sh potential = twin::sampleTrilinear(*volume.geometry, position + (k + 1) * volume.cellSize * towards);
     left -= std::clamp(-2.0 * twin::kY1 * glm::dot(potential.c1, towards), 0.0, 1.0);
     if (left < 0.5) break;
@@ -147,14 +139,13 @@ class GlossyTest : public test::SharedProgramsTest {
           .upload(gl::Texels::rgbaFloat, volume.texels[c].data());
     const gl::Buffer in("probes", probes.size() * sizeof(GlossyProbe), probes.data(), gl::Usage::staticDraw);
     const gl::Buffer out("radiances", probes.size() * sizeof(glm::vec4), nullptr, gl::Usage::dynamicCopy);
-    gl::ShaderFlags flags = LightPropagationVolume::lookupFlags(LpvSettings{});
-    flags.push_back({"GLOSSY_MARCH", volume.geometry.has_value()});
+    const gl::ShaderFlags flags = LightPropagationVolume::lookupFlags(LpvSettings{});
     gl::Texture geometry("geometry", gl::Format::rgba32f, glm::ivec3(volume.cells + 1), sampling);
-    if (volume.geometry) {
-      std::vector<glm::vec4> corners;
+    std::vector<glm::vec4> corners;
+    if (volume.geometry)
       for (const twin::Sh& sh : volume.geometry->cells) corners.emplace_back(glm::dvec4(sh.c0, sh.c1));
-      geometry.upload(gl::Texels::rgbaFloat, corners.data());
-    }
+    else corners.assign(static_cast<std::size_t>(std::pow(volume.cells + 1, 3)), glm::vec4(0.0f));
+    geometry.upload(gl::Texels::rgbaFloat, corners.data());
     const gl::Program& program = library().loadCompute("glossy probe", "lpv/glossy_probe.comp", flags);
     const GlossyLobes lobes;
     {
@@ -236,14 +227,14 @@ TEST_F(GlossyTest, AConstantRadianceIsReflectedByTheReflectance) {
 TEST_F(GlossyTest, TheShaderAgreesWithItsTwin) {
   std::mt19937 random(7);
   std::uniform_real_distribution<float> unit(0.0f, 1.0f), sign(-0.5f, 0.5f);
-  for (const bool marches : {false, true}) {
+  for (const bool hasSurfels : {false, true}) {
     SmallVolume volume;
     volume.cells = 8;
     volume.steps = 4;
     for (auto& channel : volume.texels)
       for (int i = 0; i < 8 * 8 * 8; ++i)
         channel.push_back({1.0f + unit(random), sign(random), sign(random), sign(random)});
-    if (marches) {
+    if (hasSurfels) {
       volume.geometry.emplace(
           twin::geometryGrid(twin::GridSpec{glm::ivec3(volume.cells), glm::dvec3(0.0), volume.cellSize}));
       for (twin::Sh& sh : volume.geometry->cells)
@@ -260,9 +251,9 @@ TEST_F(GlossyTest, TheShaderAgreesWithItsTwin) {
         brightest = std::max(brightest, expected[c]);
       }
     }
-    std::cout << "[ measured ] " << (marches ? "march" : "mean") << ": largest difference to the twin "
+    std::cout << "[ measured ] " << (hasSurfels ? "surfels" : "no surfels") << ": largest difference to the twin "
               << largest / brightest << "\n";
-    EXPECT_LT(largest, 8e-3 * brightest) << marches;  // of the lobes' own quadrature and of their table
+    EXPECT_LT(largest, 8e-3 * brightest) << hasSurfels;  // of the lobes' own quadrature and of their table
   }
 }
 
@@ -362,7 +353,7 @@ RenderSettings glossySettings() {
   settings.size = kGlossySize;
   settings.fullFloatTarget = true;
   settings.lpv.transport = LpvTransport::propagate;
-  settings.lpv.glossy = LpvGlossy::march;
+  settings.lpv.glossy = true;
   settings.shadow.size = 512;
   return settings;
 }
@@ -380,12 +371,11 @@ TEST_F(GlossyTest, AWallReflectsAboutWhatPathsDo) {
   for (const double alpha : {0.1, 0.5}) {
     const Scene scene = boxWithWall(alpha);
     RenderSettings settings = glossySettings();
-    const auto with = [&](LpvGlossy glossy, int steps) {
+    const auto with = [&](bool glossy) {
       settings.lpv.glossy = glossy;
-      settings.lpv.glossySteps = steps;
       return glossyPicture(library(), context(), scene, settings);
     };
-    const Image without = with(LpvGlossy::off, 0), on[] = {with(LpvGlossy::mean, 0), with(LpvGlossy::march, 0)};
+    const Image without = with(false), on = with(true);
     PathTracer::Settings paths;
     paths.size = kGlossySize;
     paths.transport = Transport::indirect;
@@ -395,33 +385,29 @@ TEST_F(GlossyTest, AWallReflectsAboutWhatPathsDo) {
     tracer.setCamera(test::openBoxCamera());
     tracer.record(128);
     const Image there = tracer.mean();
-    double squares = 0.0, sumThere = 0.0, differences[2] = {}, sums[2] = {};
+    double squares = 0.0, sumThere = 0.0, differences = 0.0, sum = 0.0;
     int blocks = 0;
     for (int by = 0; by < kGlossySize.y; by += 4)
       for (int bx = 0; bx < kGlossySize.x; bx += 4) {
-        double a[2] = {}, b = 0.0;
+        double a = 0.0, b = 0.0;
         bool onWall = true;
         for (int y = by; y < by + 4; ++y)
           for (int x = bx; x < bx + 4; ++x) {
-            onWall = onWall && without.at(x, y) == glm::vec3(0.0f) && on[0].at(x, y) != glm::vec3(0.0f);
-            for (int k = 0; k < 2; ++k) a[k] += static_cast<double>(on[k].at(x, y).y) / 16.0;
+            onWall = onWall && without.at(x, y) == glm::vec3(0.0f) && there.at(x, y) != glm::vec3(0.0f);
+            a += static_cast<double>(on.at(x, y).y) / 16.0;
             b += static_cast<double>(there.at(x, y).y) / 16.0;
           }
         if (!onWall) continue;
         ++blocks;
         squares += b * b, sumThere += b;
-        for (int k = 0; k < 2; ++k) differences[k] += (a[k] - b) * (a[k] - b), sums[k] += a[k];
+        differences += (a - b) * (a - b), sum += a;
       }
     ASSERT_GT(blocks, 8);
-    std::cout << "[ measured ] alpha " << alpha << ", " << blocks << " blocks, mean of 4 cells, march: relative L2";
-    for (const double d : differences) std::cout << " " << std::sqrt(d / squares);
-    std::cout << "; brightness over paths'";
-    for (const double s : sums) std::cout << " " << s / sumThere;
-    const double constant = std::sqrt(1.0 - sumThere * sumThere / (blocks * squares));
-    std::cout << "; best constant " << constant << "\n";
-    const double marched = std::sqrt(differences[1] / squares);
-    EXPECT_LT(marched, std::sqrt(differences[0] / squares)) << alpha;
-    EXPECT_LT(marched, constant) << alpha;  // it knows where the light is
+    const double error = std::sqrt(differences / squares),
+                 constant = std::sqrt(1.0 - sumThere * sumThere / (blocks * squares));
+    std::cout << "[ measured ] alpha " << alpha << ", " << blocks << " blocks: relative L2 " << error
+              << "; brightness over paths' " << sum / sumThere << "; best constant " << constant << "\n";
+    EXPECT_LT(error, constant) << alpha;  // it knows where the light is
   }
 }
 
@@ -435,7 +421,7 @@ TEST_F(GlossyTest, NothingOfItIsThereUnlessAskedForAndNeeded) {
   };
   const auto made = [](const Scene& scene, bool glossy) {
     RenderSettings settings = glossySettings();
-    settings.lpv.glossy = glossy ? LpvGlossy::march : LpvGlossy::off;
+    settings.lpv.glossy = glossy;
     gl::ProgramLibrary own;
     Renderer renderer(context(), own, scene, settings);
     renderer.render(test::openBoxCamera());

@@ -174,7 +174,7 @@ TEST(Settings, AreReadByTheirTechnique) {
   EXPECT_TRUE(isRead(*findSetting("lpv.samples"), settings));
   EXPECT_FALSE(isRead(*findSetting("lpv.iterations"), settings));
   EXPECT_EQ(onlyTransport(*findSetting("lpv.iterations")), LpvTransport::propagate);
-  EXPECT_EQ(onlyTransport(*findSetting("lpv.voxels")), LpvTransport::gather);
+  EXPECT_EQ(onlyTransport(*findSetting("lpv.bounce-cells")), LpvTransport::gather);
   EXPECT_EQ(onlyTransport(*findSetting("lpv.cells")), std::nullopt);
   EXPECT_EQ(onlyTransport(*findSetting("rsm.size")), std::nullopt);
 }

@@ -10,16 +10,14 @@
 //   E = Phi c1 c2 / (pi r^2 + n A c1 c2),
 // bounded next to a point. A is the area that one texel stands for.
 // Visibility: each lane keeps four of its nodes, drawn in proportion to their contribution (reservoir sampling
-// [Chao1982]). One ray per lane, systematically spread over all contributions, goes through voxels or through the
-// scene's hierarchy to a texel of such a node, drawn by its flux.
+// [Chao1982]). One ray per lane, systematically spread over all contributions, goes through the scene's
+// hierarchy to a texel of such a node, drawn by its flux.
 layout(local_size_x = 64) in;  // LPV_LANES
 #include "lib/clamped_int.glsl"
 #include "shared/bindings.h"
-#define VISIBILITY_VOXELS 1
-#define VISIBILITY_RAYS 2
 #include "shared/path_tracer.h"
 #include "rays/random.glsl"
-#if VISIBILITY == VISIBILITY_RAYS
+#if VISIBILITY
 // The texture atlas has the map's usual unit.
 #undef UNIT_RSM_POSITION
 #undef UNIT_RSM_NORMAL
@@ -32,9 +30,7 @@ layout(local_size_x = 64) in;  // LPV_LANES
 uniform float rayEnd;  // by which a ray ends before its point, along the point's normal
 #endif
 #include "lpv/receivers/common.glsl"
-#if VISIBILITY == VISIBILITY_VOXELS
-#include "lpv/gather/voxels.glsl"
-#elif VISIBILITY == VISIBILITY_RAYS
+#if VISIBILITY
 #include "lpv/receivers/surface.glsl"
 #endif
 #if PERSPECTIVE
@@ -60,8 +56,7 @@ shared uvec2 rays[LPV_LANES];    // node + 1, or 0: none; the lane that chose it
 shared vec3 sent[LPV_LANES], arrived[LPV_LANES];
 #endif
 
-const float kOff = 2.0;  // voxels by which both ends of a ray are moved off their surfaces
-const float kOpen = 4.0;         // radii
+const float kOpen = 4.0;  // radii
 
 LightNode nodeAt(uint node) {
   int at = TREE_TEXELS * int(node);
@@ -185,15 +180,10 @@ uint leafOf(uint node, vec3 position, vec3 normal, float xi) {
 // Whether light from a node's place arrives.
 bool arrives(LpvReceiver receiver, uint node) {
   LightNode end = nodeAt(node);
-#if VISIBILITY == VISIBILITY_RAYS
   Surface surface = surfaceOf(receiver);
   vec3 from = offsetRay(surface.position, surface.geometricNormal, surface.magnitude),
        direction = end.position + rayEnd * end.normal - receiving.rayOrigin - from;
   return dot(direction, surface.geometricNormal) > 0.0 && !anyHit(Ray(from, 0.0, direction, 1.0), receiver.triangle);
-#else
-  return !isBlocked(receiver.position + kOff * voxelSize * receiver.normal,
-                    end.position + kOff * voxelSize * end.normal, false);
-#endif
 }
 #endif
 
