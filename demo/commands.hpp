@@ -42,21 +42,30 @@ struct CommonOptions {
   void writeJson(const nlohmann::ordered_json& json) const;  ///< no effect without --json
 };
 
+inline constexpr std::string_view kUsualTechnique = "irradiance-cache";
+
 /// --technique, --component, --fidelity, --deviation, --set, --size: the options of a picture.
 struct PictureOptions {
-  std::string technique = "lpv", component = "all", fidelity = "corrected", size = "1280x720";
+  /// technique: empty until readSettingsFile(), unless it is given.
+  std::string technique, component = "all", fidelity = "corrected", size = "1280x720";
   std::vector<std::string> deviations, settings;
   std::string settingsFile;  ///< --settings: its content counts as given before the command line
 
   void declare(Command app);
   std::optional<std::uint32_t> settingsSpp;  ///< samples per pixel from the settings file; path tracing only
 
-  /// Reads --settings, if given; options from the command line take precedence. Call once, before parse().
+  /// Reads --settings, if given; options from the command line take precedence. Then sets the technique if none is
+  /// given. Call once, before parse().
   void readSettingsFile();
   /// The options as a settings file, which readSettingsFile() takes.
   nlohmann::ordered_json toJson() const;
   /// Throws Error(badInput) naming the option. Options that the technique does not read cause a warning.
   RenderSettings parse() const;
+
+ private:
+  void addSettingsFile();
+  /// That of --fidelity, of the first deviation, or of the first setting that one technique alone reads.
+  std::string impliedTechnique() const;
 };
 
 /// "640x360" with both from 1 to 16384; throws Error(badInput) naming the option.
@@ -68,8 +77,7 @@ Camera chooseCamera(const Scene& scene, const std::string& text);
 
 /// Every key of --set with its meaning and default, for --help and README.
 std::string settingsHelp();
-/// Parses "KEY=VALUE" of --set; a former spelling of the key causes a warning. `only`: accept only settings of that
-/// cost. Throws Error(badInput) listing the keys.
+/// Parses "KEY=VALUE" of --set. `only`: accept only settings of that cost. Throws Error(badInput) listing the keys.
 SettingAssignment parseSet(const std::string& assignment, const SettingCost* only = nullptr);
 inline constexpr SettingCost kSolutionCost =
     SettingCost::solution;  ///< for the settings that a radiosity solution depends on
@@ -100,8 +108,8 @@ nlohmann::ordered_json stagesJson(const std::vector<gl::StageStatistics>& stages
 /// The savings of the reflective shadow map's gather, in pixels per frame.
 nlohmann::ordered_json gatherJson(const RsmGather& gather);
 std::string gatherLine(const RsmGather& gather);
-nlohmann::ordered_json receiversJson(const LpvReceivers& receivers);
-std::string receiversLine(const LpvReceivers& receivers);
+nlohmann::ordered_json cacheJson(const IrradianceCache& cache);
+std::string cacheLine(const IrradianceCache& cache);
 std::string stagesTable(const std::vector<gl::StageStatistics>& stages, const std::string& renderer);
 
 }  // namespace lucerna::demo

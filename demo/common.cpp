@@ -54,10 +54,7 @@ std::vector<std::string> offeredSettings(const SettingCost* only) {
 }
 
 SettingAssignment parseSet(const std::string& assignment, const SettingCost* only) {
-  const std::string key = assignment.substr(0, assignment.find('=')), now = formerKey(key);
-  SettingAssignment result = parseAssignment(assignment, "--set ", only);
-  if (!now.empty()) logWarning("--set {}: now written {}", key, now);
-  return result;
+  return parseAssignment(assignment, "--set ", only);
 }
 
 std::string deviationsHelp() {
@@ -73,8 +70,11 @@ void PictureOptions::declare(Command app) {
   const auto offerNames = [](Option option, const auto& names) {
     offer(option, std::vector<std::string>(names.begin(), names.end()));
   };
-  offerNames(app.addOption("--technique", technique, "direct, rsm, lpv, radiosity or path").showDefault(),
-             namesOf(Technique{}));
+  offerNames(
+      app.addOption("--technique", technique,
+                    "direct, rsm, lpv, irradiance-cache, radiosity or path; without it the one that alone reads a "
+                    "setting or deviation given, else irradiance-cache"),
+      namesOf(Technique{}));
   offerNames(app.addOption("--component", component, "all, direct or indirect").showDefault(), namesOf(Component{}));
   offerNames(
       app.addOption("--fidelity", fidelity,
@@ -98,17 +98,35 @@ void PictureOptions::declare(Command app) {
 }
 
 void PictureOptions::readSettingsFile() {
-  if (settingsFile.empty()) return;
+  if (!settingsFile.empty()) addSettingsFile();
+  if (technique.empty()) technique = impliedTechnique();
+  if (settingsSpp && technique != "path")
+    throwBadInput("--settings {}: key \"spp\": samples per pixel belong to technique path, not to {}", settingsFile,
+                  technique);
+}
+
+std::string PictureOptions::impliedTechnique() const {
+  const auto implied = [&](const std::string& option, std::string_view name) {
+    if (name != kUsualTechnique) logInfo("{}: using technique {}, the only one that reads it", option, name);
+    return std::string(name);
+  };
+  if (fidelity != "corrected") return implied("--fidelity " + fidelity, "lpv");
+  for (const Deviation& deviation : allDeviations())
+    if (!deviations.empty() && deviations.front().starts_with(std::string(deviation.name) + "="))
+      return implied(deviations.front(), std::string_view(deviation.name).substr(0, deviations.front().find('.')));
+  for (const std::string& assignment : settings)
+    if (const auto only = onlyTechnique(*parseSet(assignment).setting)) return implied(assignment, nameOf(*only));
+  return std::string(kUsualTechnique);
+}
+
+void PictureOptions::addSettingsFile() {
   const PictureOptions usual;
   const SettingsFile file = demo::readSettingsFile(settingsFile);
-  if (file.technique && technique == usual.technique) technique = *file.technique;
+  if (file.technique && technique.empty()) technique = *file.technique;
   if (file.fidelity && fidelity == usual.fidelity) fidelity = *file.fidelity;
   deviations.insert(deviations.begin(), file.deviations.begin(), file.deviations.end());
   settings.insert(settings.begin(), file.settings.begin(), file.settings.end());
   settingsSpp = file.spp;
-  if (settingsSpp && technique != "path")
-    throwBadInput("--settings {}: key \"spp\": samples per pixel belong to technique path, not to {}", settingsFile,
-                  technique);
 }
 
 nlohmann::ordered_json PictureOptions::toJson() const {
@@ -117,43 +135,23 @@ nlohmann::ordered_json PictureOptions::toJson() const {
 
 namespace {
 
-/// The transport if none is named: that of the first setting or deviation read by one transport only, otherwise paths,
-/// which include all light.
-void chooseTransport(RenderSettings& settings, const PictureOptions& options,
-                     const std::vector<const Setting*>& given) {
-  const auto isSet = [&](std::string_view key) {
-    return std::any_of(given.begin(), given.end(), [&](const Setting* s) { return s->key == key; });
-  };
-  if (!isSet("lpv.transport")) {
-    settings.lpv.transport = LpvTransport::rays;
-    if (options.fidelity != "corrected" || settings.rsm.fluxCosine ||
-        settings.lpv.deviations != LpvSettings::Deviations{})
-      settings.lpv.transport = LpvTransport::propagate;
-    for (const Setting* setting : given)
-      if (const auto transport = onlyTransport(*setting)) {
-        settings.lpv.transport = *transport;
-        if (*transport != LpvTransport::rays)
-          logInfo("{}: using lpv.transport={}, the only one that reads it", setting->key, nameOf(*transport));
-        break;
-      }
-  }
-  if (!isSet("lpv.bounces") && settings.lpv.transport != LpvTransport::propagate)
-    settings.lpv.bounces = LpvSettings::kAllBounces;
-}
-
-/// The transports of the light propagation volume that read a setting: "propagate", "propagate and rays".
-std::string readingTransports(const Setting& setting) {
-  std::string text;
-  for (const std::string_view name : namesOf(LpvTransport{}))
-    if (isReadBy(setting, parseName<LpvTransport>(name, ""))) text += (text.empty() ? "" : " and ") + std::string(name);
-  return text;
+/// The transport if none is named: that of the first setting that only one of them reads.
+void chooseTransport(RenderSettings& settings, const std::vector<const Setting*>& given) {
+  if (std::any_of(given.begin(), given.end(), [](const Setting* s) { return s->key == "cache.transport"; })) return;
+  for (const Setting* setting : given)
+    if (const auto transport = onlyTransport(*setting)) {
+      settings.cache.transport = *transport;
+      if (*transport != RenderSettings{}.cache.transport)
+        logInfo("{}: using cache.transport={}, the only one that reads it", setting->key, nameOf(*transport));
+      return;
+    }
 }
 
 }  // namespace
 
 RenderSettings PictureOptions::parse() const {
   RenderSettings result;
-  result.technique = parseName<Technique>(technique, "--technique");
+  result.technique = parseName<Technique>(technique.empty() ? impliedTechnique() : technique, "--technique");
   result.component = parseName<Component>(component, "--component");
   applyFidelity(result, parseName<Fidelity>(fidelity, "--fidelity"));
   for (const std::string& deviation : deviations) applyDeviation(result, deviation);
@@ -164,15 +162,15 @@ RenderSettings PictureOptions::parse() const {
     parseSetting(*setting, result, value, "--set ");
     given.push_back(setting);
   }
-  if (result.technique == Technique::lpv) chooseTransport(result, *this, given);
+  if (result.technique == Technique::irradianceCache) chooseTransport(result, given);
   std::string unread;
   for (const Setting* setting : given) {
     if (!isReadBy(*setting, result.technique)) unread += (unread.empty() ? "" : ", ") + std::string(setting->key);
     else if (!isRead(*setting, result))
-      logWarning("--set {}: lpv.transport={} does not use it, {} does", setting->key, nameOf(result.lpv.transport),
-                 readingTransports(*setting));
+      logWarning("--set {}: cache.transport={} does not use it, {} does", setting->key, nameOf(result.cache.transport),
+                 nameOf(*onlyTransport(*setting)));
   }
-  if (!unread.empty()) logWarning("--set {}: technique {} does not use it", unread, technique);
+  if (!unread.empty()) logWarning("--set {}: technique {} does not use it", unread, nameOf(result.technique));
   return result;
 }
 
@@ -249,19 +247,19 @@ std::string gatherLine(const RsmGather& gather) {
                      count("gathered"), count("pixels"), count("refused"), 100.0 * gather.counts().saving());
 }
 
-nlohmann::ordered_json receiversJson(const LpvReceivers& receivers) {
-  const LpvReceivers::Counts& c = receivers.counts();
-  return {{"receivers", c.receivers},
+nlohmann::ordered_json cacheJson(const IrradianceCache& cache) {
+  const IrradianceCache::Counts& c = cache.counts();
+  return {{"records", c.records},
           {"waiting", c.waiting},
           {"without_room", c.left},
-          {"paths_of_each", receivers.settings().samples}};
+          {"paths_of_each", cache.settings().samples}};
 }
 
-std::string receiversLine(const LpvReceivers& receivers) {
-  const LpvReceivers::Counts& c = receivers.counts();
-  std::string line = fmt::format("{} receivers, {} paths each", c.receivers, receivers.settings().samples);
+std::string cacheLine(const IrradianceCache& cache) {
+  const IrradianceCache::Counts& c = cache.counts();
+  std::string line = fmt::format("{} records, {} paths each", c.records, cache.settings().samples);
   if (c.waiting > 0) line += fmt::format("; {} incomplete", c.waiting);
-  if (c.left > 0) line += fmt::format("; {} without room (lpv.cells)", c.left);
+  if (c.left > 0) line += fmt::format("; {} without room (cache.cells)", c.left);
   return line + "\n";
 }
 

@@ -32,7 +32,7 @@ struct Generate {
 };
 
 /// Light of sun, lamps and environment on each patch.
-std::vector<glm::dvec3> receivedLight(const Generate& options, const Scene& scene, const RadiosityMesh& mesh) {
+std::vector<glm::dvec3> cachedLight(const Generate& options, const Scene& scene, const RadiosityMesh& mesh) {
   const auto host = options.common.makeHost(false);
   const gl::Context context;
   gl::ProgramLibrary programs;
@@ -55,7 +55,7 @@ int generateFromScene(const Generate& options) {
   const auto [model, edge] = loadRadSource(options.model, options.edge, options.triangles);
   const Scene& scene = model.scene;
   RadReceived received;
-  if (options.lights) received = [&](const RadiosityMesh& mesh) { return receivedLight(options, scene, mesh); };
+  if (options.lights) received = [&](const RadiosityMesh& mesh) { return cachedLight(options, scene, mesh); };
   const RadScene made = radTrianglesOf(scene, {edge, options.power}, received);
   const bool hasOthers = scene.sun || !scene.spots.empty() || !scene.points.empty() || scene.environment;
   if (hasOthers && !options.lights)

@@ -108,7 +108,7 @@ int runRender(RenderOptions options) {
                image.width, image.height, options.picture.technique, options.picture.component, mean.x, mean.y, mean.z,
                seconds, context.capabilities().renderer);
     if (renderer.gather()) fmt::print("{}", gatherLine(*renderer.gather()));
-    if (renderer.receivers()) fmt::print("{}", receiversLine(*renderer.receivers()));
+    if (renderer.irradianceCache()) fmt::print("{}", cacheLine(*renderer.irradianceCache()));
     if (options.repeat > 1)
       fmt::print("{}", stagesTable(renderer.timer().statistics(), context.capabilities().renderer));
   }
@@ -127,7 +127,7 @@ int runRender(RenderOptions options) {
   json["gpu_bytes"] = renderer.gpuBytes();
   json["left_out"] = renderer.leftOut();
   if (renderer.gather()) json["rsm"] = gatherJson(*renderer.gather());
-  if (renderer.receivers()) json["lpv"] = receiversJson(*renderer.receivers());
+  if (renderer.irradianceCache()) json["cache"] = cacheJson(*renderer.irradianceCache());
   if (options.repeat > 1) json["stages"] = stagesJson(renderer.timer().statistics());
   if (const RadiosityView* view = renderer.radiosity()) {
     const RadiositySolution& s = view->solution();
@@ -166,7 +166,7 @@ Work addRender(Command app) {
   app.addOption(
       "--ask", options->ask,
       "X,Y: instead of writing a picture, print as JSON what lit this pixel, from the top left: each lamp, texel, "
-      "cell, receiver, patch or path, with its share");
+      "cell, cache record, patch or path, with its share");
   options->picture.declare(app);
   options->path.declare(app);
   options->common.declare(app);

@@ -17,12 +17,12 @@ std::vector<std::string_view> techniquesOf(const Setting& setting) {
   return names;
 }
 
-/// Transports of the light propagation volume; empty if all read it, or that technique does not.
+/// Transports of the irradiance cache; empty if all read it, or that technique does not.
 std::vector<std::string_view> transportsOf(const Setting& setting) {
   std::vector<std::string_view> names;
-  for (std::size_t i = 0; i < namesOf(LpvTransport{}).size(); ++i)
-    if (isReadBy(setting, static_cast<LpvTransport>(i))) names.push_back(namesOf(LpvTransport{})[i]);
-  if (names.size() == namesOf(LpvTransport{}).size()) names.clear();
+  for (std::size_t i = 0; i < namesOf(CacheTransport{}).size(); ++i)
+    if (isReadBy(setting, static_cast<CacheTransport>(i))) names.push_back(namesOf(CacheTransport{})[i]);
+  if (names.size() == namesOf(CacheTransport{}).size()) names.clear();
   return names;
 }
 

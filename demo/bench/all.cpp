@@ -163,6 +163,7 @@ class Report {
     };
     const Scene scene = loadScene(file);
     RenderSettings usual;
+    usual.technique = Technique::lpv;
     applyFidelity(usual, Fidelity::original);
     usual.size = kSheetTile;
     keep("lpv", "Light propagation volumes as published",

@@ -106,9 +106,10 @@ void ErrorBenchOptions::declareView(Command app) {
   app.addOption("--size", size, "WIDTHxHEIGHT of the pictures").showDefault();
   app.addOption("--references", references,
                 "folder of cached references (default: LUCERNA_REFERENCES, or lucerna in the user's cache)");
-  offer(app.addOption("--techniques", techniques, "only these of direct, rsm, lpv, radiosity, path; default: all")
+  offer(app.addOption("--techniques", techniques,
+                      "only these of direct, rsm, lpv, irradiance-cache, radiosity, path; default: all")
             .delimiter(','),
-        {"direct", "rsm", "lpv", "radiosity", "path"});
+        {"direct", "rsm", "lpv", "irradiance-cache", "radiosity", "path"});
   app.addFlag("--small", small, "leave out the most expensive rungs");
   app.addFlag(
       "--floors", floors,

@@ -360,8 +360,10 @@ ErrorRow measureFloor(const ErrorBench& bench, const Rung& rung) {
   const measure::LightKinds lights = modelOf(rung, bench.references.lights).paths.lights;
   const Scene scene = measure::litBy(bench.scene, lights);
   RenderSettings settings = settingsOf(bench, rung.picture, Component::indirect);
-  settings.lpv.transport = rung.floor == Floor::map ? LpvTransport::gather : LpvTransport::rays;
-  settings.lpv.samples = settings.lpv.rays;  // what the cells' receivers find is not shown
+  if (settings.technique == Technique::lpv) settings.cache.cascades = settings.lpv.cascades;
+  settings.technique = Technique::irradianceCache;
+  settings.cache.transport = rung.floor == Floor::map ? CacheTransport::gather : CacheTransport::rays;
+  settings.cache.samples = settings.cache.rays;  // the records' light is not shown
   Timed timed;
   auto start = Clock::now();
   Renderer renderer(bench.context, bench.programs, scene, settings);
@@ -370,12 +372,14 @@ ErrorRow measureFloor(const ErrorBench& bench, const Rung& rung) {
   timed.setupMs = msSince(start);
   start = Clock::now();
   const std::clock_t cpuStart = std::clock();
-  const ReceiversFrame* frame = renderer.receiversFrame();
+  const IrradianceCacheFrame* frame = renderer.irradianceCacheFrame();
   constexpr int kPaths = 2048;
   const Image indirect =
       !frame ? Image(bench.size.x, bench.size.y)
              : measure::lit(bench.references.albedo,
-                            rung.floor == Floor::map ? frame->gatheredAtPixels() : frame->readFromCells(kPaths));
+                            rung.floor == Floor::map
+                                ? frame->gatheredAtPixels()
+                                : frame->readFromCells(settings.lpv.cascades, settings.lpv.blendBand, kPaths));
   timed.wallMs = {msSince(start)};
   timed.cpuMs = {1e3 * static_cast<double>(std::clock() - cpuStart) / CLOCKS_PER_SEC};
   timed.gpuBytes = renderer.gpuBytes();

@@ -40,52 +40,51 @@ std::vector<Rung> rsmLadder(bool shrink) {
 std::vector<Rung> lpvLadder(bool shrink) {
   std::vector<Rung> rungs;
   for (int cells : {8, 16, 32, 64})
-    if (!shrink || cells < 64)
-      rungs.push_back(rung("lpv", "cells", {"lpv.transport=propagate", fmt::format("lpv.cells={}", cells)}));
+    if (!shrink || cells < 64) rungs.push_back(rung("lpv", "cells", {fmt::format("lpv.cells={}", cells)}));
   for (int cascades : {1, 2, 3, 4})
-    rungs.push_back(rung("lpv", "cascades", {"lpv.transport=propagate", fmt::format("lpv.cascades={}", cascades)}));
+    rungs.push_back(rung("lpv", "cascades", {fmt::format("lpv.cascades={}", cascades)}));
   for (int iterations : {2, 4, 8, 16, 32})
-    rungs.push_back(
-        rung("lpv", "iterations", {"lpv.transport=propagate", fmt::format("lpv.iterations={}", iterations)}));
+    rungs.push_back(rung("lpv", "iterations", {fmt::format("lpv.iterations={}", iterations)}));
   // Each number of bounces has a separate reference.
   for (int bounces : {1, 2, 4})
-    if (!shrink || bounces != 2)
-      rungs.push_back(rung("lpv", "bounces", {"lpv.transport=propagate", fmt::format("lpv.bounces={}", bounces)}));
+    if (!shrink || bounces != 2) rungs.push_back(rung("lpv", "bounces", {fmt::format("lpv.bounces={}", bounces)}));
   for (int iterations : {8, 12})
     rungs.push_back(rung("lpv", "", {fmt::format("lpv.iterations={}", iterations)}, "original"));
+  return rungs;
+}
+
+std::vector<Rung> cacheLadder(bool shrink) {
+  std::vector<Rung> rungs;
   const auto gather = [&](const char* series, std::vector<std::string> settings) {
-    settings.insert(settings.begin(), "lpv.transport=gather");
-    rungs.push_back(rung("lpv", std::string("gather ") + series, std::move(settings)));
+    settings.insert(settings.begin(), "cache.transport=gather");
+    rungs.push_back(rung("irradiance-cache", std::string("gather ") + series, std::move(settings)));
   };
   for (int cells : {16, 32, 64})
-    if (!shrink || cells < 64) gather("cells", {"lpv.bounces=1", fmt::format("lpv.cells={}", cells)});
+    if (!shrink || cells < 64) gather("cells", {"cache.bounces=1", fmt::format("cache.cells={}", cells)});
   for (int size : {64, 128, 256, 512})
-    if (!shrink || size < 512) gather("map", {"lpv.bounces=1", fmt::format("rsm.size={}", size)});
+    if (!shrink || size < 512) gather("map", {"cache.bounces=1", fmt::format("rsm.size={}", size)});
   for (int cells : {8, 16, 32})
-    if (!shrink || cells < 32) gather("bounce cells", {"lpv.bounces=all", fmt::format("lpv.bounce-cells={}", cells)});
-  if (!shrink) gather("visibility", {"lpv.bounces=1", "lpv.visibility=none"});
-  // Paths to receivers: all light, except in the ladder of bounces itself.
-  const auto rays = [&](const char* series, std::string setting, bool allBounces = true) {
-    std::vector<std::string> settings{"lpv.transport=rays", std::move(setting)};
-    if (allBounces) settings.emplace_back("lpv.bounces=all");
-    rungs.push_back(rung("lpv", std::string("rays ") + series, std::move(settings)));
+    if (!shrink || cells < 32) gather("bounce cells", {fmt::format("cache.bounce-cells={}", cells)});
+  if (!shrink) gather("visibility", {"cache.bounces=1", "cache.visibility=none"});
+  // Along paths.
+  const auto rays = [&](const char* series, std::string setting) {
+    rungs.push_back(rung("irradiance-cache", std::string("rays ") + series, {std::move(setting)}));
   };
   for (int samples : {16, 64, 256, 1024})
-    if (!shrink || samples < 1024) rays("samples", fmt::format("lpv.samples={}", samples));
+    if (!shrink || samples < 1024) rays("samples", fmt::format("cache.samples={}", samples));
   for (int cells : {16, 32, 64})
-    if (!shrink || cells < 64) rays("cells", fmt::format("lpv.cells={}", cells));
-  // The least that receivers cost: one cascade and few paths.
+    if (!shrink || cells < 64) rays("cells", fmt::format("cache.cells={}", cells));
+  // The least that records cost: one cascade and few paths.
   for (int cells : {8, 16, 32})
-    rungs.push_back(rung("lpv", "rays coarse",
-                         {"lpv.transport=rays", "lpv.bounces=all", "lpv.samples=16", "lpv.cascades=1",
-                          fmt::format("lpv.cells={}", cells)}));
+    rungs.push_back(rung("irradiance-cache", "rays coarse",
+                         {"cache.samples=16", "cache.cascades=1", fmt::format("cache.cells={}", cells)}));
   // Each cascade more halves the finest cells.
   for (int cascades : {2, 3, 4})
     if (!shrink)
-      rungs.push_back(rung("lpv", "rays cascades",
-                           {"lpv.transport=rays", "lpv.cells=64", fmt::format("lpv.cascades={}", cascades)}));
+      rungs.push_back(
+          rung("irradiance-cache", "rays cascades", {"cache.cells=64", fmt::format("cache.cascades={}", cascades)}));
   for (const char* bounces : {"1", "2", "all"})
-    if (!shrink || bounces[0] != '2') rays("bounces", fmt::format("lpv.bounces={}", bounces), false);
+    if (!shrink || bounces[0] != '2') rays("bounces", fmt::format("cache.bounces={}", bounces));
   return rungs;
 }
 
@@ -113,7 +112,9 @@ std::vector<Rung> radiosityLadder(bool shrink, double longestSide) {
 }
 
 /// The prefix of a technique's settings and deviations.
-std::string prefixOf(const std::string& technique) { return technique + "."; }
+std::string prefixOf(const std::string& technique) {
+  return (technique == "irradiance-cache" ? "cache" : technique) + ".";
+}
 
 }  // namespace
 
@@ -133,12 +134,13 @@ std::string Rung::label() const {
 
 std::string Rung::name() const { return label(); }
 
-std::vector<std::string> ladderTechniques() { return {"direct", "rsm", "lpv", "radiosity"}; }
+std::vector<std::string> ladderTechniques() { return {"direct", "rsm", "lpv", "irradiance-cache", "radiosity"}; }
 
 std::vector<Rung> ladderOf(const std::string& technique, bool shrink, double longestSide) {
   if (technique == "direct") return {rung("direct", "", {})};
   if (technique == "rsm") return rsmLadder(shrink);
   if (technique == "lpv") return lpvLadder(shrink);
+  if (technique == "irradiance-cache") return cacheLadder(shrink);
   if (technique == "radiosity") return radiosityLadder(shrink, longestSide);
   std::string known;
   for (const std::string& t : ladderTechniques()) known += (known.empty() ? "" : ", ") + t;
@@ -146,19 +148,19 @@ std::vector<Rung> ladderOf(const std::string& technique, bool shrink, double lon
 }
 
 std::vector<Rung> floorRungs() {
-  const auto of = [](Floor floor, std::vector<std::string> settings) {
-    Rung r = rung("lpv", "floors", std::move(settings));
+  const auto of = [](const char* technique, Floor floor, std::vector<std::string> settings) {
+    Rung r = rung(technique, "floors", std::move(settings));
     r.isStep = false;
     r.floor = floor;
     return r;
   };
-  const std::string propagate = "lpv.transport=propagate", gather = "lpv.transport=gather", once = "lpv.bounces=1";
-  return {of(Floor::map, {propagate}),
-          of(Floor::cells, {propagate}),
-          of(Floor::none, {propagate}),
-          of(Floor::map, {gather, once}),
-          of(Floor::none, {"lpv.transport=rays", once, "lpv.samples=2048"}),
-          of(Floor::none, {gather, once})};
+  const std::string gather = "cache.transport=gather", once = "cache.bounces=1";
+  return {of("lpv", Floor::map, {}),
+          of("lpv", Floor::cells, {}),
+          of("lpv", Floor::none, {}),
+          of("irradiance-cache", Floor::map, {gather, once}),
+          of("irradiance-cache", Floor::none, {once, "cache.samples=2048"}),
+          of("irradiance-cache", Floor::none, {gather, once})};
 }
 
 Rung askedRung(const std::string& text) {
@@ -178,10 +180,8 @@ Rung askedRung(const std::string& text) {
 std::vector<Rung> deviationRungs(const std::vector<std::string>& techniques) {
   std::vector<Rung> rungs;
   for (const std::string& technique : techniques) {
-    if (technique == "direct") continue;
-    rungs.push_back(
-        rung(technique, "corrected",
-             technique == "lpv" ? std::vector<std::string>{"lpv.transport=propagate"} : std::vector<std::string>{}));
+    if (technique == "direct" || technique == "irradiance-cache") continue;
+    rungs.push_back(rung(technique, "corrected", {}));
     rungs.back().isStep = false;
     for (const Deviation& deviation : allDeviations()) {
       // A deviation's name begins with the technique that it belongs to; the light propagation volume also reads the
@@ -190,7 +190,6 @@ std::vector<Rung> deviationRungs(const std::vector<std::string>& techniques) {
       const bool reads = name.starts_with(prefixOf(technique)) || (technique == "lpv" && name == "rsm.flux-cosine");
       if (!reads) continue;
       Rung r = rung(technique, name, {});
-      r.isStep = false;
       r.isStep = false;
       r.picture.deviations = {name + "=on"};
       rungs.push_back(r);

@@ -23,8 +23,7 @@ std::string nameOf(const LightPaths& paths) {
 bool showsLights(Transport transport) { return transport == Transport::all || transport == Transport::direct; }
 
 LightKinds directLightsOf(const RenderSettings& settings) {
-  const bool all = settings.technique == Technique::radiosity ||
-                   (settings.technique == Technique::lpv && settings.lpv.transport != LpvTransport::propagate);
+  const bool all = settings.technique == Technique::radiosity || settings.technique == Technique::irradianceCache;
   return all ? LightKinds{} : LightKinds{true, true, false, false};  // else of forward shading: sun and lamps
 }
 
@@ -41,11 +40,14 @@ LightPaths modelOf(const RenderSettings& settings) {
     case Technique::rsm: model.transport = Transport::oneBounceUnoccluded; break;
     case Technique::lpv:
       model.transport = settings.lpv.blocking ? Transport::oneBounce : Transport::oneBounceUnoccluded;
-      if (settings.lpv.transport == LpvTransport::gather)
-        model.transport =
-            settings.lpv.visibility == LpvVisibility::none ? Transport::oneBounceUnoccluded : Transport::oneBounce;
-      if (settings.lpv.transport == LpvTransport::rays) model.transport = Transport::oneBounce;
       if (settings.lpv.bounces != 1) model = {Transport::indirect, model.lights, settings.lpv.bounces};
+      break;
+    case Technique::irradianceCache:
+      model.transport =
+          settings.cache.transport == CacheTransport::gather && settings.cache.visibility == GatherVisibility::none
+              ? Transport::oneBounceUnoccluded
+              : Transport::oneBounce;
+      if (settings.cache.bounces != 1) model = {Transport::indirect, model.lights, settings.cache.bounces};
       break;
     case Technique::radiosity:
     case Technique::path: break;

@@ -260,6 +260,7 @@ int runPictures(const PicturesOptions& options) {
   checkWritable(options.output);
   bench::checkOriginal(options.original);
   RenderSettings usual;
+  usual.technique = Technique::lpv;
   applyFidelity(usual, parseName<Fidelity>(options.fidelity, "--fidelity"));
   if (lowerExtension(options.output) != ".png") throwBadInput("-o {}: the extension must be png", options.output);
   if (options.exposure && !(*options.exposure > 0.0 && *options.exposure <= 1e12))

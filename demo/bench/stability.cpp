@@ -75,7 +75,7 @@ std::vector<StabilityRow> runStability(const StabilityContext& context, const st
                                        const PartOptions& options) {
   std::vector<StabilityCase> cases;
   addLpvCases(cases);
-  addReceiverCases(cases);
+  addCacheCases(cases);
   addPictureCases(cases);
   addPlaceCases(cases);
   addRadiosityCases(cases);

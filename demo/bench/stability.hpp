@@ -42,8 +42,8 @@ struct StabilityCase {
 };
 
 void addLpvCases(std::vector<StabilityCase>& cases);
-/// Cases of lpv.transport=rays.
-void addReceiverCases(std::vector<StabilityCase>& cases);
+/// Cases of the irradiance cache.
+void addCacheCases(std::vector<StabilityCase>& cases);
 /// Cases of the techniques that Renderer draws: units, scale, position, size, nothing to light.
 void addPictureCases(std::vector<StabilityCase>& cases);
 /// Cases of all techniques and lights: far from the origin, large faces.

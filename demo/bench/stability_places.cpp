@@ -93,8 +93,8 @@ const char* techniqueOf(How how) {
   switch (how) {
     case How::direct: return "direct";
     case How::rsm: return "rsm";
-    case How::lpv:
-    case How::rays: return "lpv";
+    case How::lpv: return "lpv";
+    case How::rays: return "irradiance-cache";
     case How::patches:
     case How::pixels: return "radiosity";
     case How::path: return "path";
@@ -120,8 +120,8 @@ Image picture(const StabilityContext& c, const Scene& scene, How how, Component 
   settings.fullFloatTarget = true;
   settings.shadow.size = 512;
   settings.rsm.size = 128;
-  settings.lpv.transport = how == How::rays ? LpvTransport::rays : LpvTransport::propagate;
-  settings.lpv.samples = 64;
+  settings.cache.samples = 64;
+  settings.cache.bounces = 1;
   settings.radiosity.solution.patches.longestEdge = scene.bounds.extent().x > 100.0 ? 500.0 : 2.5;
   settings.radiosity.solution.hemicubes.resolution = 32;
   settings.radiosity.direct = how == How::pixels ? RadiosityView::Direct::pixels : RadiosityView::Direct::patches;

@@ -169,7 +169,6 @@ LpvSettings settingsOf(const Config& config) {
   RenderSettings settings;
   if (config.published) applyFidelity(settings, Fidelity::thesis);
   LpvSettings& lpv = settings.lpv;
-  lpv.transport = LpvTransport::propagate;
   if (config.published && config.fill != LpvFill::layered) {
     lpv.tile = 1;
     lpv.deviations.halfGrids = false;  // filling by layered passes needs this off

@@ -43,8 +43,8 @@ Finding measureErrors(const UnitInput& input) {
   options.rungs = {"direct",
                    "rsm",
                    "lpv",
-                   "lpv lpv.transport=propagate",
-                   "lpv lpv.transport=gather",
+                   "irradiance-cache",
+                   "irradiance-cache cache.transport=gather",
                    "radiosity radiosity.edge=0.1"};
   at("measuring errors");
   const auto result = bench::runErrorBench(session.context, session.programs, loadScene(options.scene), options,

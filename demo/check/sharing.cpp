@@ -23,7 +23,7 @@ Finding drawAtOnce(const UnitInput& input) {
     threads[i] = std::thread([&, i] {
       std::vector<std::string> words{"check",
                                      "--part",
-                                     i % 2 ? "pictures/lpv-cornell" : "pictures/gather-cornell",
+                                     i % 2 ? "pictures/cache-cornell" : "pictures/gather-cornell",
                                      "--out",
                                      (std::filesystem::path(input.out) / fmt::format("sharing{}", i)).string(),
                                      "--reference",
@@ -48,6 +48,6 @@ Finding drawAtOnce(const UnitInput& input) {
 
 }  // namespace
 
-std::vector<Unit> sharingUnits() { return {{"sharing", "four-processes", 60.0, drawAtOnce, "pictures/lpv-cornell"}}; }
+std::vector<Unit> sharingUnits() { return {{"sharing", "four-processes", 60.0, drawAtOnce, "pictures/cache-cornell"}}; }
 
 }  // namespace lucerna::demo::check

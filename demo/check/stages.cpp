@@ -68,11 +68,11 @@ const std::vector<Asked>& walks() {
         asked.push_back(
             {fmt::format("{}-{}", name, scene), fmt::format("{0}/{0}.json", scene), technique, std::move(settings)});
       };
-      add("lpv", "lpv", {});
+      add("cache", "irradiance-cache", {});
       add("direct", "direct", {});
-      add("propagate", "lpv", {"lpv.transport=propagate"});
+      add("lpv", "lpv", {});
       add("rsm", "rsm", {});
-      add("gather", "lpv", {"lpv.transport=gather"});
+      add("gather", "irradiance-cache", {"cache.transport=gather"});
       add("path", "path", {});
       add("radiosity", "radiosity", {scene == std::string("atrium") ? "radiosity.edge=2" : "radiosity.edge=0.1"});
     }

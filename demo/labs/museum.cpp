@@ -31,7 +31,6 @@ RenderSettings settingsOf(const std::string& technique, const std::string& devia
   applyFidelity(settings, Fidelity::corrected);
   settings.technique = parseName<Technique>(technique, "technique");
   settings.component = Component::indirect;
-  settings.lpv.transport = LpvTransport::propagate;  // all deviations of the volume belong to it
   settings.size = {96, 96};
   settings.fullFloatTarget = true;
   if (!deviation.empty()) applyDeviation(settings, deviation + "=on");

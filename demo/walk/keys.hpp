@@ -30,6 +30,7 @@ enum class Action {
   direct,
   rsm,
   lpv,
+  cache,
   radiosity,
   path,
   undo,

@@ -313,21 +313,22 @@ void showStages(Ui& ui, WalkState& s) {
   if (menu(ui, "in the scene", glyphs, kGlyphNames)) s.glyphs = static_cast<Glyphs>(glyphs);
   explain(
       "As lines: the light in the brightest cells of a propagated volume by direction (its intensity, the largest half "
-      "a cell long), the corners of cells that block light, or receivers: disks on their surfaces, in "
+      "a cell long), the corners of cells that block light, or cache records: disks on their surfaces, in "
       "the colour of their irradiance.");
   if (s.glyphs == Glyphs::none) return;
-  const int last = side.renderer->settings().lpv.cascades.cascades - 1;
+  const RenderSettings& settings = side.renderer->settings();
+  const int last = (s.glyphs == Glyphs::records ? settings.cache.cascades : settings.lpv.cascades).cascades - 1;
   s.glyphCascade = std::clamp(s.glyphCascade, 0, last);
   ImGui::SliderInt("cascade", &s.glyphCascade, 0, last);
   ui.note("cascade");
   ImGui::SliderInt("at most", &s.glyphMost, 10, 5000, "%d", ImGuiSliderFlags_Logarithmic);
   ui.note("at most");
-  if (s.glyphs == Glyphs::receivers && !side.renderer->receivers())
-    wrapped("Only technique lpv with lpv.transport=gather or rays has them.");
+  if (s.glyphs == Glyphs::records && !side.renderer->irradianceCache())
+    wrapped("Available only for technique irradiance-cache.");
   else if ((s.glyphs == Glyphs::lobes || s.glyphs == Glyphs::geometry) && !side.renderer->lpv())
-    wrapped("Available only for technique lpv with lpv.transport=propagate.");
+    wrapped("Available only for technique lpv.");
   else if (s.glyphs == Glyphs::geometry && !side.renderer->lpv()->geometryVolume())
-    wrapped("Available only with lpv.blocking=on.");
+    wrapped("Not available with lpv.blocking=off.");
 }
 
 /// Distribution of frame times, with the budget as a line.

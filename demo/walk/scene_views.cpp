@@ -238,38 +238,38 @@ void addDisk(std::vector<gl::Lines::Line>& lines, const glm::vec3& centre, const
 }
 
 /// In the order of a hash of their cells: the same ones while the camera moves.
-std::vector<gl::Lines::Line> receiversOf(const LpvReceivers& receivers, const Renderer& renderer, const Camera& camera,
-                                         const Cascade& placed, int cascade, int most) {
+std::vector<gl::Lines::Line> recordsOf(const IrradianceCache& cache, const Renderer& renderer, const Camera& camera,
+                                       const Cascade& placed, int cascade, int most) {
   const glm::vec3 eye(camera.position - renderer.origin()), ahead(camera.direction);
   const glm::vec3 right = glm::normalize(glm::cross(ahead, glm::vec3(camera.up))), up = glm::cross(right, ahead);
   const float tangent = std::tan(0.5f * static_cast<float>(camera.verticalFov));
   const float aspect = static_cast<float>(renderer.size().x) / static_cast<float>(renderer.size().y);
-  std::vector<std::pair<std::uint32_t, LpvReceivers::Shown>> seen;
-  for (const LpvReceivers::Shown& receiver : receivers.shown()) {
-    if (receiver.cascade != cascade) continue;
-    const glm::vec3 to = receiver.position - eye;
+  std::vector<std::pair<std::uint32_t, IrradianceCache::Shown>> seen;
+  for (const IrradianceCache::Shown& record : cache.shown()) {
+    if (record.cascade != cascade) continue;
+    const glm::vec3 to = record.position - eye;
     const float depth = glm::dot(to, ahead);
     if (depth <= 0.0f || std::abs(glm::dot(to, up)) > tangent * depth ||
         std::abs(glm::dot(to, right)) > aspect * tangent * depth)
       continue;
-    const glm::uvec3 cell(receiver.cell);
+    const glm::uvec3 cell(record.cell);
     std::uint32_t hash = cell.x * 73856093u ^ cell.y * 19349663u ^ cell.z * 83492791u ^
-                         static_cast<std::uint32_t>(receiver.face) * 2654435761u;
+                         static_cast<std::uint32_t>(record.face) * 2654435761u;
     hash = (hash ^ hash >> 16) * 0x45d9f3bu;
-    seen.emplace_back(hash ^ hash >> 16, receiver);
+    seen.emplace_back(hash ^ hash >> 16, record);
   }
   std::ranges::sort(seen, [](const auto& a, const auto& b) { return a.first < b.first; });
   if (seen.size() > static_cast<std::size_t>(most)) seen.resize(static_cast<std::size_t>(most));
   // One in ten is brighter than white.
   std::vector<double> largest;
-  for (const auto& [hash, receiver] : seen)
-    largest.push_back(std::max({receiver.irradiance.x, receiver.irradiance.y, receiver.irradiance.z}));
+  for (const auto& [hash, record] : seen)
+    largest.push_back(std::max({record.irradiance.x, record.irradiance.y, record.irradiance.z}));
   const double white = largest.empty() ? 1.0 : std::max(percentile(largest, 0.9), 1e-30);
   std::vector<gl::Lines::Line> lines;
   const auto cell = static_cast<float>(placed.cellSize);
-  for (const auto& [hash, receiver] : seen) {
-    const glm::vec3 color = glm::clamp(receiver.irradiance / static_cast<float>(white), 0.0f, 1.0f);
-    addDisk(lines, receiver.position + 0.01f * cell * receiver.normal, receiver.normal, 0.2f * cell,
+  for (const auto& [hash, record] : seen) {
+    const glm::vec3 color = glm::clamp(record.irradiance / static_cast<float>(white), 0.0f, 1.0f);
+    addDisk(lines, record.position + 0.01f * cell * record.normal, record.normal, 0.2f * cell,
             glm::pow(color, glm::vec3(1.0f / 2.2f)));
   }
   return lines;
@@ -281,19 +281,19 @@ std::vector<gl::Lines::Line> glyphsOf(Glyphs glyphs, const Renderer& renderer, c
                                       int cascade, int most) {
   const RenderSettings& settings = renderer.settings();
   const LightPropagationVolume* volume = renderer.lpv();
-  if (glyphs == Glyphs::none || (glyphs == Glyphs::receivers ? !renderer.receivers() : !volume)) return {};
-  // Place them as render/lpv_frame.cpp and, but for the blend, render/receivers_frame.cpp do.
+  if (glyphs == Glyphs::none || (glyphs == Glyphs::records ? !renderer.irradianceCache() : !volume)) return {};
+  // Place them as render/lpv_frame.cpp and, but for the blend, render/irradiance_cache_frame.cpp do.
   Bounds bounds = scene.bounds;
   bounds.min -= renderer.origin();
   bounds.max -= renderer.origin();
   Camera inFrame = camera;
   inFrame.position -= renderer.origin();
   const std::vector<Cascade> cascades =
-      glyphs == Glyphs::receivers ? placeReceiverCascades(settings.lpv.cascades, bounds, inFrame, 1.0)
-                                  : placeCascades(settings.lpv.cascades, bounds, inFrame.position, inFrame.direction);
+      glyphs == Glyphs::records ? placeCascadesAround(settings.cache.cascades, bounds, inFrame, 1.0)
+                                : placeCascades(settings.lpv.cascades, bounds, inFrame.position, inFrame.direction);
   const int k = std::clamp(cascade, 0, static_cast<int>(cascades.size()) - 1);
   const Cascade& placed = cascades[static_cast<std::size_t>(k)];
-  if (glyphs == Glyphs::receivers) return receiversOf(*renderer.receivers(), renderer, camera, placed, k, most);
+  if (glyphs == Glyphs::records) return recordsOf(*renderer.irradianceCache(), renderer, camera, placed, k, most);
   return glyphs == Glyphs::lobes ? lobesOf(*volume, placed, k, most) : geometryOf(*volume, placed, k, most);
 }
 

@@ -93,7 +93,7 @@ struct WalkState {
   float countWhite = 32.0f;
   std::unique_ptr<CountViews> countViews;
   Glyphs glyphs = Glyphs::none;
-  int glyphCascade = LPV_MAX_CASCADES - 1, glyphMost = 400;
+  int glyphCascade = MAX_CASCADES - 1, glyphMost = 400;
 
   // Truth
   bool truthOn = false;

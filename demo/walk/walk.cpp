@@ -60,7 +60,7 @@ nlohmann::ordered_json resultJson(const WalkOptions& options, const Host& host, 
   json["gpu_bytes"] = renderer.gpuBytes();
   json["left_out"] = renderer.leftOut();
   if (renderer.gather()) json["rsm"] = gatherJson(*renderer.gather());
-  if (renderer.receivers()) json["lpv"] = receiversJson(*renderer.receivers());
+  if (renderer.irradianceCache()) json["cache"] = cacheJson(*renderer.irradianceCache());
   return json;
 }
 
@@ -72,9 +72,9 @@ PartFolder framesOf(const WalkOptions& options, const Scene& scene, const Render
     throwBadInput(
         "--flicker: compares a frame with the one before it, which may be another part's: not with --part and "
         "--checkpoint");
-  if (renderer.receivers())
+  if (renderer.irradianceCache())
     throwBadInput(
-        "--set lpv.transport=rays: a frame goes on from the one before it, which may be another part's: not with "
+        "--technique irradiance-cache: a frame goes on from the one before it, which may be another part's: not with "
         "--part and --checkpoint");
   Hash views;
   for (const Camera& camera : cameras) {
@@ -182,7 +182,7 @@ int play(const WalkOptions& options, Host& host, const gl::Context& context, gl:
   state.camera.emplace(path.view(first), 0.08 * glm::length(state.scene->bounds.extent()));
   state.path.spline = std::move(path);
   state.sides[0].options = state.sides[1].options = options.picture;
-  state.sides[1].options.technique = options.picture.technique == "direct" ? "lpv" : "direct";
+  state.sides[1].options.technique = options.picture.technique == "direct" ? "irradiance-cache" : "direct";
   state.sides[1].options.settings.clear();
   state.sides[1].options.deviations.clear();
   state.shotFolder = options.shots;

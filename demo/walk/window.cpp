@@ -160,6 +160,7 @@ void WalkWindow::act(Action action) {
     case Action::direct: technique("direct"); break;
     case Action::rsm: technique("rsm"); break;
     case Action::lpv: technique("lpv"); break;
+    case Action::cache: technique("irradiance-cache"); break;
     case Action::radiosity: technique("radiosity"); break;
     case Action::path:
       s.sides[static_cast<std::size_t>(s.layout == Layout::one ? s.shown : 1)].shows = Shows::reference;
@@ -503,11 +504,10 @@ void WalkWindow::drawGlyphs(const Compare::Inputs& inputs) {
   const SideState& side = state_.side();
   if (state_.glyphs == Glyphs::none || !side.renderer || side.shows == Shows::picture) return;
   const Camera& camera = state_.camera->camera();
-  const LpvReceivers* receivers = side.renderer->receivers();  // their light changes from frame to frame
-  const std::string are =
-      fmt::format("{} {} {} {} {} {} {}", static_cast<int>(state_.glyphs), side.builtAs, state_.glyphCascade,
-                  state_.glyphMost, cameraText(camera), state_.shown,
-                  state_.glyphs == Glyphs::receivers && receivers ? receivers->frame() : 0);
+  const IrradianceCache* cache = side.renderer->irradianceCache();  // their light changes from frame to frame
+  const std::string are = fmt::format("{} {} {} {} {} {} {}", static_cast<int>(state_.glyphs), side.builtAs,
+                                      state_.glyphCascade, state_.glyphMost, cameraText(camera), state_.shown,
+                                      state_.glyphs == Glyphs::records && cache ? cache->frame() : 0);
   if (are != glyphsAre_)
     glyphs_ = glyphsOf(state_.glyphs, *side.renderer, *state_.scene, camera, state_.glyphCascade, state_.glyphMost);
   glyphsAre_ = are;

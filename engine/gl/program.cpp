@@ -146,6 +146,11 @@ void dump(const std::string& name, GLuint program, const std::vector<std::pair<G
 
 }  // namespace
 
+ShaderFlags with(ShaderFlags flags, const ShaderFlags& more) {
+  flags.insert(flags.end(), more.begin(), more.end());
+  return flags;
+}
+
 // ---------------------------------------------------------------------------------------------------- Program
 
 Program::~Program() {

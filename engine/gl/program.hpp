@@ -22,6 +22,7 @@ namespace lucerna::gl {
 
 /// (name, value) in the order written; 0/1 switches or small constants such as a work-group size.
 using ShaderFlags = std::vector<std::pair<std::string, int>>;
+ShaderFlags with(ShaderFlags flags, const ShaderFlags& more);
 
 struct ShaderStage {
   GLenum type;

@@ -18,15 +18,15 @@ LpvCascadeJoin::LpvCascadeJoin(gl::ProgramLibrary& programs, const gl::Capabilit
   const bool full = settings.storage == LpvSettings::Storage::full;
   result_ = lpvVolume("result", full ? gl::Format::rgba32f : gl::Format::rgba16f, grid.size, kLpvSampling);
   texels_ = gl::Buffer("lpv result texels", 3 * result_[0].bytes(), nullptr, gl::Usage::dynamicCopy);
-  const gl::ShaderFlags from =
-      with(grid.flags, {{"FROM_BUFFER", settings.propagate == LpvPropagate::compute}, {"JOINED", settings.joins()}});
+  const gl::ShaderFlags from = gl::with(
+      grid.flags, {{"FROM_BUFFER", settings.propagate == LpvPropagate::compute}, {"JOINED", settings.joins()}});
   if (!settings.joins()) {
     finish_ = &programs.loadCompute("lpv finish", "lpv/finish.comp", from);
     return;
   }
   balance_ = &programs.loadCompute("lpv balance", "lpv/balance.comp", from);
-  join_ = &programs.loadCompute("lpv join", "lpv/join.comp", with(from, {{"HAS_COARSER", 1}}));
-  joinCoarsest_ = &programs.loadCompute("lpv join coarsest", "lpv/join.comp", with(from, {{"HAS_COARSER", 0}}));
+  join_ = &programs.loadCompute("lpv join", "lpv/join.comp", gl::with(from, {{"HAS_COARSER", 1}}));
+  joinCoarsest_ = &programs.loadCompute("lpv join coarsest", "lpv/join.comp", gl::with(from, {{"HAS_COARSER", 0}}));
   received_ = lpvBuffer(capabilities, "lpv received", gl::Format::rgba32f, grid.volumeBytes());
   balances_ = lpvBuffer(capabilities, "lpv balances", gl::Format::r32f,
                         texelCount(glm::ivec3((cells_ + 1) / 2)) * sizeof(float));

@@ -22,7 +22,7 @@ LpvGeometryVolume::LpvGeometryVolume(gl::ProgramLibrary& programs, const gl::Cap
   const LpvSettings::Deviations& deviations = settings.deviations;
   const bool reflects = settings.reflects();
   fill_ = &programs.loadRaster("lpv geometry volume", "lpv/inject.vert", "lpv/geometry_volume.frag",
-                               {{"LPV_FULL_FLOAT", settings.storage == LpvSettings::Storage::full},
+                               {{"GRID_FULL_FLOAT", settings.storage == LpvSettings::Storage::full},
                                 {"TRUNCATE", deviations.truncate},
                                 {"SURFEL_AREA", deviations.surfelArea},
                                 {"LOWEST_CELL", deviations.firstCell ? 1 : 0},
@@ -42,8 +42,8 @@ LpvGeometryVolume::LpvGeometryVolume(gl::ProgramLibrary& programs, const gl::Cap
   };
   allocate("lpv geometry volume", reflectance_, *potential_, target_);
   if (settings.mergeViews) {
-    mergeViews_ =
-        &programs.loadCompute("lpv merge views", "lpv/merge_views.comp", with(grid.flags, {{"REFLECTS", reflects}}));
+    mergeViews_ = &programs.loadCompute("lpv merge views", "lpv/merge_views.comp",
+                                        gl::with(grid.flags, {{"REFLECTS", reflects}}));
     viewPotential_ = gl::Texture("lpv view", gl::Format::rgba32f, grid.corners);
     allocate("lpv view", viewReflectance_, viewPotential_, viewTarget_);
   }
@@ -53,18 +53,19 @@ LpvGeometryVolume::LpvGeometryVolume(gl::ProgramLibrary& programs, const gl::Cap
       !reflects && !deviations.surfelArea && !settings.glossy) {
     const bool fixed = settings.fill == LpvFill::fixed;
     const gl::ShaderFlags fill{{"FILL_FIXED", fixed}, {"FILL_FLOAT", !fixed}, {"TRUNCATE", deviations.truncate}};
-    count_ = &programs.loadCompute("lpv count surfels", "lpv/count_surfels.comp",
-                                   with(with(with(grid.flags, fill), grid.lights), {{"TILE", settings.tile}}));
+    count_ =
+        &programs.loadCompute("lpv count surfels", "lpv/count_surfels.comp",
+                              gl::with(gl::with(gl::with(grid.flags, fill), grid.lights), {{"TILE", settings.tile}}));
     if (fixed)
       resolve_ = &programs.loadCompute("lpv resolve", "lpv/resolve.comp",
-                                       with(with(grid.flags, countFlags(settings, capabilities)), grid.lights));
+                                       gl::with(gl::with(grid.flags, countFlags(settings, capabilities)), grid.lights));
     counts_ = lpvBuffer(capabilities, "lpv geometry volume's counts", gl::Format::rgba32f,
                         texelCount(grid.corners) * kLpvCellBytes);
   }
   if (settings.propagate != LpvPropagate::compute) return;
   const auto average = [&](bool fromBuffer) {
     return &programs.loadCompute("lpv geometry faces", "lpv/geometry_faces.comp",
-                                 with(with(grid.flags, {{"FROM_BUFFER", fromBuffer}}), grid.kernel));
+                                 gl::with(gl::with(grid.flags, {{"FROM_BUFFER", fromBuffer}}), grid.kernel));
   };
   averageFaces_ = average(false);
   if (count_) averageCountedFaces_ = average(true);

@@ -13,7 +13,7 @@ LpvGrid::LpvGrid(const LpvSettings& settings) {
   size = {c.cells, c.cells, c.cells * c.cascades};
   corners = {c.cells + 1, c.cells + 1, (c.cells + 1) * c.cascades};
   summed = deviations.halfGrids ? gl::Format::rgba16f : gl::Format::rgba32f;
-  flags = {{"LPV_FULL_FLOAT", settings.storage == LpvSettings::Storage::full},
+  flags = {{"GRID_FULL_FLOAT", settings.storage == LpvSettings::Storage::full},
            {"GROUP_X", kLpvGroup.x},
            {"GROUP_Y", kLpvGroup.y}};
   kernel = {{"FACE_KERNEL", deviations.kernel()},
@@ -28,11 +28,6 @@ std::size_t LpvGrid::volumeBytes() const { return 3 * texelCount(size) * kLpvCel
 
 std::size_t texelCount(const glm::ivec3& size) {
   return static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * static_cast<std::size_t>(size.z);
-}
-
-gl::ShaderFlags with(gl::ShaderFlags flags, const gl::ShaderFlags& more) {
-  flags.insert(flags.end(), more.begin(), more.end());
-  return flags;
 }
 
 LpvVolume lpvVolume(const char* name, gl::Format format, const glm::ivec3& size, const gl::Sampling& sampling) {

@@ -28,7 +28,6 @@ struct LpvGrid {
 };
 
 std::size_t texelCount(const glm::ivec3& size);
-gl::ShaderFlags with(gl::ShaderFlags flags, const gl::ShaderFlags& more);
 LpvVolume lpvVolume(const char* name, gl::Format format, const glm::ivec3& size, const gl::Sampling& sampling);
 std::size_t bytesOf(const LpvVolume& volume);  ///< 0 if never allocated
 /// Throws Error(missingCapability) if the driver's texture buffers are too small.

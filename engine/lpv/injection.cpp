@@ -15,8 +15,9 @@ LpvInjection::LpvInjection(gl::ProgramLibrary& programs, const gl::Capabilities&
   volume_ = lpvVolume("injected", grid.summed, grid.size, kLpvSampling);
   if (settings.fill == LpvFill::layered) {
     const bool full = settings.storage == LpvSettings::Storage::full;
-    inject_ = &programs.loadRaster("lpv inject", "lpv/inject.vert", "lpv/inject.frag",
-                                   with({{"LPV_FULL_FLOAT", full}, {"REFLECTS", 0}}, grid.lights), "lpv/inject.geom");
+    inject_ =
+        &programs.loadRaster("lpv inject", "lpv/inject.vert", "lpv/inject.frag",
+                             gl::with({{"GRID_FULL_FLOAT", full}, {"REFLECTS", 0}}, grid.lights), "lpv/inject.geom");
     const std::array<const gl::Texture*, 3> targets{&volume_[0], &volume_[1], &volume_[2]};
     target_ = gl::Framebuffer("lpv inject", targets);
     noAttributes_ = gl::VertexArray("lpv points");
@@ -26,9 +27,9 @@ LpvInjection::LpvInjection(gl::ProgramLibrary& programs, const gl::Capabilities&
     throwMissingCapability(
         "lpv.fill=atomic: the driver has neither NV_shader_atomic_fp16_vector nor NV_shader_atomic_float; "
         "lpv.fill=fixed needs no extension");
-  const gl::ShaderFlags flags = with(with(grid.flags, countFlags(settings, capabilities)), grid.lights);
-  inject_ =
-      &programs.loadCompute("lpv inject by atomics", "lpv/inject_atomic.comp", with(flags, {{"TILE", settings.tile}}));
+  const gl::ShaderFlags flags = gl::with(gl::with(grid.flags, countFlags(settings, capabilities)), grid.lights);
+  inject_ = &programs.loadCompute("lpv inject by atomics", "lpv/inject_atomic.comp",
+                                  gl::with(flags, {{"TILE", settings.tile}}));
   const bool halves = countsHalfFloats(settings, capabilities);
   if (settings.fill == LpvFill::fixed || halves)
     resolve_ = &programs.loadCompute("lpv resolve", "lpv/resolve.comp", flags);

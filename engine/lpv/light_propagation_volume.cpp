@@ -12,11 +12,9 @@ namespace {
 
 LpvSettings checked(const LpvSettings& settings, const gl::Capabilities& capabilities) {
   const CascadeSettings& c = settings.cascades;
-  CHECK(c.cascades >= 1 && c.cascades <= LPV_MAX_CASCADES, "cascades = {}", c.cascades);
+  CHECK(c.cascades >= 1 && c.cascades <= MAX_CASCADES, "cascades = {}", c.cascades);
   CHECK(settings.tile >= 1 && settings.tile <= 16, "tile = {}", settings.tile);
   CHECK(c.cells >= 1 && (c.cells + 1) * c.cascades <= capabilities.max3dTextureSize, "cells = {}", c.cells);
-  if (settings.bounces == LpvSettings::kAllBounces)
-    throwBadInput("lpv.bounces=all: lpv.transport=propagate needs a number of bounces");
   if (settings.reflects() && (!settings.blocking || settings.steps() < 2))
     throwBadInput(
         "lpv.bounces={}: the geometry volume reflects light; this needs two iterations and lpv.blocking other than off",
@@ -47,7 +45,7 @@ LpvSettings LpvSettings::resolved() const {
 LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities,
                                                const LpvSettings& wanted)
     : settings_(checked(wanted, capabilities)),
-      constants_("lpv constants", sizeof(shared::LpvConstants), nullptr, gl::Usage::dynamicDraw),
+      constants_("lpv constants", sizeof(shared::CascadeConstants), nullptr, gl::Usage::dynamicDraw),
       injection_(programs, capabilities, settings_) {
   if (settings_.isBlocked()) geometry_.emplace(programs, capabilities, settings_);
   if (settings_.steps() == 0) return;
@@ -59,52 +57,35 @@ LightPropagationVolume::LightPropagationVolume(gl::ProgramLibrary& programs, con
   const LpvGrid grid(settings_);
   source_ = lpvVolume("source", gl::Format::rgba32f, grid.size, kLpvSampling);
   reflect_ = &programs.loadCompute("lpv reflect", "lpv/reflect.comp",
-                                   with(grid.flags, {{"FROM_BUFFER", !layered}, {"JOINED", settings_.joins()}}));
+                                   gl::with(grid.flags, {{"FROM_BUFFER", !layered}, {"JOINED", settings_.joins()}}));
 }
 
 gl::ShaderFlags LightPropagationVolume::lookupFlags(const LpvSettings& settings) {
-  return {{"LPV_FULL_FLOAT", settings.storage == LpvSettings::Storage::full},
+  return {{"GRID_FULL_FLOAT", settings.storage == LpvSettings::Storage::full},
           {"FLUX_UNITS", settings.deviations.fluxUnits},
           {"FLUX_LOOKUP", settings.lookupUsed() == LpvLookup::flux},
           {"UNWINDOWED", settings.deviations.unwindowed},
           {"SUM_CASCADES", settings.deviations.sumCascades}};
 }
 
-shared::LpvConstants lpvConstants(const LpvSettings& settings, const std::vector<Cascade>& cascades,
-                                  float referenceIrradiance) {
-  CHECK(referenceIrradiance > 0.0f, "E_ref = {}", referenceIrradiance);
-  CHECK(static_cast<int>(cascades.size()) == settings.cascades.cascades, "{} cascades", cascades.size());
-  shared::LpvConstants constants{};
-  const int cells = settings.cascades.cells;
-  const float offset = settings.offset();
-  for (std::size_t k = 0; k < cascades.size(); ++k) {
+shared::CascadeConstants lpvConstants(const LpvSettings& settings, const std::vector<Cascade>& cascades,
+                                      float referenceIrradiance) {
+  shared::CascadeConstants constants =
+      cascadeConstants(settings.cascades, cascades, settings.blendBand, referenceIrradiance, settings.offset());
+  for (std::size_t k = 0; k < cascades.size() && settings.deviations.truncate; ++k) {
+    // int(x + 0.5) cells from the world's origin, wrong for negative x; then whole world units, off the cell grid.
     const Cascade& cascade = cascades[k];
-    auto& target = constants.cascades[k];
-    target.minimum = glm::vec3(cascade.minimum());
-    if (settings.deviations.truncate) {
-      // int(x + 0.5) cells from the world's origin, wrong for negative x; then whole world units, off the cell grid.
-      const glm::dvec3 inCells = (cascade.centre - 0.5 * cells * cascade.cellSize) / cascade.cellSize;
-      target.minimum = glm::vec3(glm::trunc(glm::trunc(inCells + 0.5) * cascade.cellSize));
-    }
-    target.cellSize = static_cast<float>(cascade.cellSize);
-    target.blendCentre = glm::vec3(cascade.centre);
-    // Snapping moves the grid by up to two cells and the trilinear lookup needs half a cell more.
-    const bool coarsest = k + 1 == cascades.size();
-    const double half = cascade.reach > 0.0 ? cascade.reach : (0.5 * cells - 2.5 - offset) * cascade.cellSize;
-    target.blendHalf = coarsest ? 1e30f : static_cast<float>(half);
-    if (!coarsest && target.blendHalf <= 0.0f) target.blendHalf = 1e-30f;  // too few cells to blend: never used
+    const glm::dvec3 inCells = (cascade.centre - 0.5 * settings.cascades.cells * cascade.cellSize) / cascade.cellSize;
+    constants.cascades[k].minimum = glm::vec3(glm::trunc(glm::trunc(inCells + 0.5) * cascade.cellSize));
   }
-  constants.shape = {cells, settings.cascades.cascades, settings.glossySteps, 0};
-  constants.referenceIrradiance = referenceIrradiance;
-  constants.blendBand = settings.blendBand;
-  constants.lookupOffset = offset;
+  constants.shape.z = settings.glossySteps;
   return constants;
 }
 
 void LightPropagationVolume::place(const LpvInputs& inputs) {
-  const shared::LpvConstants constants = lpvConstants(settings_, inputs.cascades, inputs.referenceIrradiance);
+  const shared::CascadeConstants constants = lpvConstants(settings_, inputs.cascades, inputs.referenceIrradiance);
   constants_.upload(0, sizeof constants, &constants);
-  constants_.bindUniform(BLOCK_LPV);
+  constants_.bindUniform(BLOCK_CASCADES);
 }
 
 void LightPropagationVolume::inject(const LpvInputs& inputs) { injection_.inject(inputs); }
@@ -158,14 +139,14 @@ void LightPropagationVolume::reflect(bool first) {
 }
 
 void LightPropagationVolume::bindForLookup() const {
-  constants_.bindUniform(BLOCK_LPV);
+  constants_.bindUniform(BLOCK_CASCADES);
   for (GLuint channel = 0; channel < 3; ++channel) result()[channel].bind(UNIT_LPV_RED + channel);
   if (settings_.glossy) geometry_->potential().bind(UNIT_LPV_GEOMETRY);
 }
 
 std::vector<AskedPart> LightPropagationVolume::ask(gl::ProgramLibrary& programs, const glm::vec3& position,
                                                    const glm::vec3& normal) const {
-  const AskedParts parts(8 * LPV_MAX_CASCADES);
+  const AskedParts parts(8 * MAX_CASCADES);
   {
     const gl::Program& program = programs.loadCompute("lpv ask", "lpv/ask.comp", lookupFlags(settings_));
     const gl::ComputePass pass("lpv ask");

@@ -10,7 +10,7 @@
 #include "lpv/injection.hpp"
 #include "lpv/propagation.hpp"
 #include "lpv/settings.hpp"
-#include "shared/lpv.h"
+#include "shared/cascades.h"
 
 #include <optional>
 #include <vector>
@@ -64,7 +64,7 @@ class LightPropagationVolume {
 };
 
 /// Placement of the cascades and normalisation of stored values, as shaders read it.
-shared::LpvConstants lpvConstants(const LpvSettings& settings, const std::vector<Cascade>& cascades,
-                                  float referenceIrradiance);
+shared::CascadeConstants lpvConstants(const LpvSettings& settings, const std::vector<Cascade>& cascades,
+                                      float referenceIrradiance);
 
 }  // namespace lucerna

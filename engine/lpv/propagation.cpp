@@ -35,9 +35,9 @@ LpvComputePropagation::LpvComputePropagation(gl::ProgramLibrary& programs, const
   const auto load = [&](const std::string& name, bool first, bool blocked) {
     return &programs.loadCompute(
         name, "lpv/propagate.comp",
-        with(with(grid.flags,
-                  {{"FIRST", first}, {"WITH_INJECTED", !settings.deviations.fewerSteps}, {"BLOCKED", blocked}}),
-             grid.kernel));
+        gl::with(gl::with(grid.flags,
+                          {{"FIRST", first}, {"WITH_INJECTED", !settings.deviations.fewerSteps}, {"BLOCKED", blocked}}),
+                 grid.kernel));
   };
   begin_ = &programs.loadCompute("lpv begin", "lpv/begin.comp", grid.flags);
   markBricks_ = &programs.loadCompute("lpv mark bricks", "lpv/mark_bricks.comp", grid.flags);
@@ -118,10 +118,10 @@ LpvLayeredPropagation::LpvLayeredPropagation(gl::ProgramLibrary& programs, const
   const LpvGrid grid(settings);
   const auto load = [&](bool blocked, bool withInjected) {
     return &programs.loadRaster("lpv propagate layered", "lpv/propagate_layered.vert", "lpv/propagate_layered.frag",
-                                with({{"LPV_FULL_FLOAT", settings.storage == LpvSettings::Storage::full},
-                                      {"BLOCKED", blocked},
-                                      {"BEGINS_WITH_INJECTED", withInjected}},
-                                     grid.kernel),
+                                gl::with({{"GRID_FULL_FLOAT", settings.storage == LpvSettings::Storage::full},
+                                          {"BLOCKED", blocked},
+                                          {"BEGINS_WITH_INJECTED", withInjected}},
+                                         grid.kernel),
                                 "lpv/propagate_layered.geom");
   };
   first_ = load(isFirstBlocked(settings), !settings.deviations.fewerSteps);

@@ -3,7 +3,7 @@
 
 #include "base/named_values.hpp"
 #include "gl/objects.hpp"
-#include "lpv/cascades.hpp"
+#include "cascades/cascades.hpp"
 #include "rsm/reflective_shadow_map.hpp"
 
 #include <algorithm>
@@ -29,16 +29,6 @@ constexpr std::array<std::string_view, 2> namesOf(LpvPropagate) { return {"compu
 /// too much for light in transit.
 enum class LpvLookup { flux, published };
 constexpr std::array<std::string_view, 2> namesOf(LpvLookup) { return {"flux", "published"}; }
-
-/// How light gets from lit surfaces to the lookup. `propagate`: through the grids' cells, step by step, as published.
-/// The others store it at receivers, points of surfaces (receivers.hpp): `gather` from the lights' maps and
-/// from points of the scene that keep the light of further bounces; `rays` along paths.
-enum class LpvTransport { propagate, gather, rays };
-constexpr std::array<std::string_view, 3> namesOf(LpvTransport) { return {"propagate", "gather", "rays"}; }
-
-/// What blocks light gathered from maps and emissive surfaces.
-enum class LpvVisibility { none, rays };
-constexpr std::array<std::string_view, 2> namesOf(LpvVisibility) { return {"none", "rays"}; }
 
 /// Whose surfels fill the geometry volume: those in the lights' maps, those seen by the camera, or both.
 enum class LpvSurfels { rsm, camera, both };
@@ -67,10 +57,8 @@ struct LpvSettings {
     bool kernel() const { return sideDirections || sideSolidAngle || fourPiKernel || blockingDirection; }
     bool operator==(const Deviations&) const = default;
   };
-  static constexpr int kAllBounces = 0;
 
   CascadeSettings cascades;
-  LpvTransport transport = LpvTransport::propagate;
   LpvLookup lookup = LpvLookup::flux;
   LpvFill fill = LpvFill::layered;
   int tile = 4;  ///< with atomics: side of the square of texels that is added up before it goes to the grid; 1: an
@@ -82,8 +70,7 @@ struct LpvSettings {
   bool blocking = true;  ///< geometry volume
   LpvSurfels surfels = LpvSurfels::rsm;
   bool mergeViews = false;  ///< several maps: the longer vector of a surfel seen twice counts; otherwise all are summed
-  int bounces = 1;  ///< with propagate more than 1 need blocking, two iterations and maps with albedo; with the
-                    ///< others kAllBounces too
+  int bounces = 1;  ///< more than 1 need blocking, two iterations and maps with albedo
   bool shafts = false;  ///< light shafts in the scene's haze (light_shafts.hpp)
   int shaftSteps = 64;  ///< samples along a view ray
   bool glossy = false;  ///< reflection of the volume's light by glossy materials (glossy_lobes.hpp)
@@ -92,17 +79,6 @@ struct LpvSettings {
   int handOver = 0;  ///< steps after which a finer cascade takes light from the coarser one; 0: lpvHandOverStep()
   std::optional<float> lookupOffset;  ///< cells along the normal by which a point is moved before the lookup; not
                                       ///< set: the lookup's default
-  LpvVisibility visibility = LpvVisibility::rays;  ///< for LpvTransport::gather
-  int bounceCells = 16;  ///< likewise: of the points that keep light of further bounces
-  int rays = 16;  ///< for LpvTransport::rays: paths per receiver and frame, 1, 2, 4 ... 64
-  int leastRays = 64;  ///< likewise: minimum number of paths of a receiver in its first frame
-  int samples = 512;  ///< likewise: paths of a receiver while light and geometry stand still
-  /// For receivers: directions around the camera in which surfaces get receivers before they come into view, so that a
-  /// turn does not flicker; 0: none.
-  int around = 1024;
-  /// Likewise: largest relative change per frame of the shown irradiance while the camera moves or paths are
-  /// added; 0: no limit.
-  float mostChange = 0.0025f;
   Storage storage = Storage::half;
   /// The compute gather also runs bricks without light; the same bits, for tests and measurements.
   bool everyBrick = false;

@@ -50,7 +50,7 @@ std::vector<GLuint> seenFrom(const gl::Program& program, const RayScene& rays, c
     {
       const gl::ComputePass pass("hidden parts");
       program.use();
-      program.set("receiverCount", static_cast<int>(receivers.size()));
+      program.set("recordCount", static_cast<int>(receivers.size()));
       program.set("raysEach", static_cast<int>(raysEach));
       rays.bind();
       in.bindStorage(1);

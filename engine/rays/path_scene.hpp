@@ -1,6 +1,7 @@
 // A scene on the GPU for path tracing: triangles and their hierarchy, materials and textures in one atlas, lights and
 // environment, for programs that include shaders/rays/{materials,bvh,environment,lights}.glsl. The path tracer starts
-// paths at a camera, the light propagation volume's receivers at surface points (lpv/receivers.hpp).
+// paths at a camera, the light propagation volume's receivers at surface points
+// (irradiance_cache/irradiance_cache.hpp).
 //
 // Space: the scene moved by -origin() (ray_scene.hpp). Units: scene units.
 #pragma once

@@ -197,16 +197,16 @@ void Renderer::answerOfForward(gl::ProgramLibrary& programs, const FrameView& vi
     for (auto& [texel, share] : texels) answer.shares.push_back(std::move(share));
     return;
   }
-  if (!lpv_ && !receivers_) return;
+  if (!lpv_ && !cache_) return;
   const std::vector<AskedPart> parts = lpv_ ? lpv_->volume().ask(programs, place, terms[ASKED_NORMAL])
-                                            : receivers_->receivers().ask(place, terms[ASKED_MESH_NORMAL]);
+                                            : cache_->cache().ask(place, terms[ASKED_MESH_NORMAL]);
   std::map<int, glm::dvec3> ofCascade;
   for (const AskedPart& part : parts) {
     const glm::dvec3 irradiance(part.irradiance);
     ofCascade.try_emplace(part.number.w, 0.0).first->second += irradiance;
     const std::string where =
         fmt::format("{} {} {} of cascade {}", part.number.x, part.number.y, part.number.z, part.number.w + 1);
-    add(answer, "lpv", (lpv_ ? "cell " : "receiver ") + where, reflection * irradiance,
+    add(answer, lpv_ ? "lpv" : "irradiance cache", (lpv_ ? "cell " : "record ") + where, reflection * irradiance,
         {position, glm::dvec3(part.place) + origin_});
     if (reflection * irradiance == glm::dvec3(0.0)) continue;  // nothing was added: no light, or a black surface
     answer.shares.back().weight = part.weight;

@@ -62,8 +62,9 @@ void LpvFrame::record(gl::TimeQuery& timer, const FrameView& view) {
                                        view.volumeCamera.direction),
                          typicalIrradiance(scene), glm::vec3(lightPosition), recordCameraMap(timer, view.volumeCamera)};
   // The volume's light is kept while its grids stay in place, unless it uses surfels seen by the camera.
-  const shared::LpvConstants constants = lpvConstants(parts_.settings.lpv, inputs.cascades, inputs.referenceIrradiance);
-  const auto liesWhere = [](const shared::LpvCascade& a, const shared::LpvCascade& b) {
+  const shared::CascadeConstants constants =
+      lpvConstants(parts_.settings.lpv, inputs.cascades, inputs.referenceIrradiance);
+  const auto liesWhere = [](const shared::CascadeGrid& a, const shared::CascadeGrid& b) {
     return a.minimum == b.minimum && a.cellSize == b.cellSize;
   };
   const bool same = parts_.settings.reuse && !cameraMap_ && cascades_.size() == inputs.cascades.size() &&

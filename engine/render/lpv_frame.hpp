@@ -1,4 +1,4 @@
-// Technique lpv with transport propagate in the frame: light injected from the lights' maps, propagated through nested
+// Technique lpv in the frame: light injected from the lights' maps, propagated through nested
 // grids, looked up in shading.
 //
 // Stages, with their inputs: rsm (lights, geometry) -> camera surfels (camera; if lpv.blocking requires them) ->
@@ -19,8 +19,8 @@ namespace lucerna {
 class LpvFrame {
  public:
   static bool isNeeded(const RenderSettings& settings, const SceneNeeds& needs) {
-    return settings.technique == Technique::lpv && settings.lpv.transport == LpvTransport::propagate &&
-           settings.component != Component::direct && LightPropagationVolume::isNeeded(needs);
+    return settings.technique == Technique::lpv && settings.component != Component::direct &&
+           LightPropagationVolume::isNeeded(needs);
   }
   explicit LpvFrame(const FrameParts& parts);
 
@@ -56,7 +56,7 @@ class LpvFrame {
   std::optional<ReflectiveShadowMap> cameraMap_;  ///< the camera's view, for the geometry volume
   LightPropagationVolume volume_;
   std::optional<GlossyLobes> lobes_;  ///< if lpv.glossy is asked for and a material of the scene is glossy
-  std::vector<shared::LpvCascade> cascades_;  ///< those of the propagated light
+  std::vector<shared::CascadeGrid> cascades_;  ///< those of the propagated light
 };
 
 }  // namespace lucerna

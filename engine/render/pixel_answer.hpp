@@ -1,7 +1,7 @@
 // What lit a pixel: the answer to a query about one pixel of a frame (no GL calls).
 //
 // Renderer::ask draws that pixel again with shaders that record each term (flag ASKED), and asks the technique's own
-// lookup for the texels, cells, receivers or patches it used. Frames without a query compile, allocate and compute none
+// lookup for the texels, cells, records or patches it used. Frames without a query compile, allocate and compute none
 // of this.
 #pragma once
 
@@ -21,7 +21,7 @@ struct PixelShare {
   std::string name;  ///< "sun", "texel 17, 40 of the sun's map", ...
   glm::dvec3 radiance{0.0};
   std::vector<glm::dvec3> places;  ///< from the pixel's surface (a path: the camera) to the light, scene coordinates
-  std::optional<double> weight;  ///< of a cell or receiver in the lookup; the form factor to a patch
+  std::optional<double> weight;  ///< of a cell or record in the lookup; the form factor to a patch
   std::optional<std::array<glm::vec4, 3>> lobe;  ///< of a cell: coefficients of red, green and blue, as stored
   std::size_t count = 1;  ///< number of combined sources
 };

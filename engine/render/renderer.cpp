@@ -76,7 +76,7 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
   spots_ = spotViews(drawn);
   points_ = pointViews(drawn);
   const bool reflectsLamps = LpvFrame::isNeeded(settings, needs_) || RsmFrame::isNeeded(settings, needs_) ||
-                             ReceiversFrame::takesMaps(settings, needs_);
+                             IrradianceCacheFrame::takesMaps(settings, needs_);
   if ((showsDirect() || reflectsLamps) && LocalLights::isNeeded(needs_)) {
     keepMostImportant(programs, *gpuScene_, spots_, LocalLights::kMostSpots);
     keepMostImportant(programs, *gpuScene_, points_, LocalLights::kMostPoints);
@@ -87,17 +87,15 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
                          origin_, *gpuScene_, sunFrustum_, spots_, points_};
   if (RsmFrame::isNeeded(settings, needs_)) rsm_.emplace(frame, depth_);
   if (LpvFrame::isNeeded(settings, needs_)) lpv_.emplace(frame);
-  if (ReceiversFrame::isNeeded(settings, needs_)) receivers_.emplace(frame, depth_);
+  if (IrradianceCacheFrame::isNeeded(settings, needs_)) cache_.emplace(frame, depth_);
   if (EnvironmentView::isNeeded(needs_) && settings.component != Component::indirect)
     environmentView_.emplace(programs, scene);
   if (haze) makeShafts(programs, *haze);
   loadPrograms(programs);
 
-  if (needs_.environment && !receivers_ && !radiosity_)
-    logWarning(
-        "technique {}{}: the environment lights nothing (path and radiosity support it, and lpv with "
-        "lpv.transport=gather or rays)",
-        nameOf(technique), technique == Technique::lpv ? " with lpv.transport=propagate" : "");
+  if (needs_.environment && !cache_ && !radiosity_)
+    logWarning("technique {}: the environment lights nothing (path, radiosity and irradiance-cache support it)",
+               nameOf(technique));
 }
 
 bool Renderer::showsDirect() const {
@@ -109,10 +107,7 @@ const Scene& Renderer::aboutOrigin(const Scene& scene) {
   return moved_ ? *moved_ : moved_.emplace(movedTo(scene, origin_));
 }
 
-bool Renderer::asksForShafts() const {
-  return settings_.technique == Technique::lpv && settings_.lpv.transport == LpvTransport::propagate &&
-         settings_.lpv.shafts;
-}
+bool Renderer::asksForShafts() const { return settings_.technique == Technique::lpv && settings_.lpv.shafts; }
 
 void Renderer::makeShafts(gl::ProgramLibrary& programs, const Haze& haze) {
   LightShafts::Settings shafts;
@@ -158,7 +153,7 @@ SurfacePrograms Renderer::surfacePrograms(gl::ProgramLibrary& programs, bool ask
       if constexpr (requires { technique.shadingFlags(); }) own = technique.shadingFlags();
     });
     flags.insert(flags.end(), own.begin(), own.end());
-    for (const char* flag : {"PROPAGATED", "RECEIVED", "GATHERED", "SHOW_REFUSED", "GLOSSY"})
+    for (const char* flag : {"PROPAGATED", "IRRADIANCE_CACHE", "GATHERED", "SHOW_REFUSED", "GLOSSY"})
       if (std::none_of(own.begin(), own.end(), [&](const auto& o) { return o.first == flag; }))
         flags.push_back({flag, 0});
     return &programs.loadRaster(name, "forward/surface.vert", "forward/surface.frag", flags);
@@ -344,7 +339,7 @@ double Renderer::turnsOfSurface() const {
   const double lamps = localLights_ ? static_cast<double>(spots_.size() + points_.size()) : 0.0;
   constexpr double kTurnsOfCell = 8.0;
   const double glossy = lpv_ && lpv_->isGlossy() ? LPV_GLOSSY_RAYS * kTurnsOfCell * settings_.lpv.glossySteps : 0.0;
-  return kTurnsOfMaterial + kTurnsOfSun * suns + kTurnsOfLamp * lamps + (lpv_ || receivers_ ? kTurnsOfIndirect : 0.0) +
+  return kTurnsOfMaterial + kTurnsOfSun * suns + kTurnsOfLamp * lamps + (lpv_ || cache_ ? kTurnsOfIndirect : 0.0) +
          glossy;
 }
 
@@ -368,15 +363,15 @@ void Renderer::render(const Camera& camera, const Camera& volumeCamera) { render
 
 void Renderer::renderToTheEnd(const Camera& camera) {
   renderFrame(camera, camera, {true, false});
-  if (!receivers_) return;
-  receivers_->collect(true);
-  const LpvReceivers& receivers = receivers_->receivers();
-  for (std::size_t frames = 0; receivers.counts().waiting > 0; ++frames) {
-    if (frames > receivers.mostFrames())
-      throw Error(ErrorKind::fault, fmt::format("internal error: after {} frames {} receivers of {} still lack light",
-                                                frames, receivers.counts().waiting, receivers.counts().receivers));
+  if (!cache_) return;
+  cache_->collect(true);
+  const IrradianceCache& cache = cache_->cache();
+  for (std::size_t frames = 0; cache.counts().waiting > 0; ++frames) {
+    if (frames > cache.mostFrames())
+      throw Error(ErrorKind::fault, fmt::format("internal error: after {} frames {} records of {} still lack light",
+                                                frames, cache.counts().waiting, cache.counts().records));
     renderFrame(camera, camera, {false, false});
-    receivers_->collect(true);
+    cache_->collect(true);
   }
 }
 
@@ -392,7 +387,7 @@ void Renderer::renderFrame(const Camera& camera, const Camera& volumeCamera, Fra
     if (shafts_) shafts_->bind();
     recordShadows(view.camera);
     if (rsm_) rsm_->record(timer_, view);
-    const bool depthIsDrawn = (receivers_ && receivers_->record(timer_, view, effort)) || rsm_;
+    const bool depthIsDrawn = (cache_ && cache_->record(timer_, view, effort)) || rsm_;
     if (lpv_) lpv_->record(timer_, view);
     shade(view, depthIsDrawn);
     if (environmentView_) {
@@ -419,7 +414,7 @@ void Renderer::renderFrame(const Camera& camera, const Camera& volumeCamera, Fra
 void Renderer::drain() {
   timer_.drain();
   if (rsm_) rsm_->collect(true);
-  if (receivers_) receivers_->collect(true);
+  if (cache_) cache_->collect(true);
 }
 
 Image Renderer::readRadiance() const {
@@ -476,7 +471,7 @@ std::vector<std::string> Renderer::leftOut() const {
   std::vector<std::string> names;
   for (const auto& [name, needed] : needs_.named())
     if (!needed) names.push_back(name);
-  const bool hasMaps = rsm_ || (lpv_ && lpv_->hasMaps()) || (receivers_ && receivers_->hasMaps());
+  const bool hasMaps = rsm_ || (lpv_ && lpv_->hasMaps()) || (cache_ && cache_->hasMaps());
   const std::pair<const char*, bool> stages[] = {{"shadow map", showsSun()},
                                                  {"sun cascades", sunCascades_.has_value()},
                                                  {"spot shadow maps", localLights_ && localLights_->hasSpots()},
@@ -486,7 +481,7 @@ std::vector<std::string> Renderer::leftOut() const {
                                                  {"rsm gather", rsm_.has_value()},
                                                  {"radiosity", radiosity_.has_value()},
                                                  {"shadow rays", radiosity_ && radiosity_->hasShadowRays()},
-                                                 {"receivers", receivers_.has_value()},
+                                                 {"irradiance cache", cache_.has_value()},
                                                  {"light propagation volume", lpv_.has_value()},
                                                  {"light shafts", shafts_.has_value()},
                                                  {"glossy reflection", lpv_ && lpv_->isGlossy()}};

@@ -3,7 +3,7 @@
 //
 // Renderer::render reads from top to bottom: direct light's shadow maps, the technique's own passes, shading (or the
 // path tracer's film), the environment and tone mapping. A technique is one object (rsm_frame, lpv_frame,
-// receivers_frame, radiosity_frame, path_frame) with its stages, its inputs to shading and its bytes.
+// cache_frame, radiosity_frame, path_frame) with its stages, its inputs to shading and its bytes.
 #pragma once
 
 #include "base/image.hpp"
@@ -23,7 +23,7 @@
 #include "render/path_frame.hpp"
 #include "render/pixel_answer.hpp"
 #include "render/radiosity_frame.hpp"
-#include "render/receivers_frame.hpp"
+#include "render/irradiance_cache_frame.hpp"
 #include "render/rsm_frame.hpp"
 #include "render/stage_picture.hpp"
 #include "scene/needs.hpp"
@@ -84,10 +84,10 @@ class Renderer {
   const SceneNeeds& needs() const { return needs_; }
   const RenderSettings& settings() const { return settings_; }
   std::vector<StagePicture> stagePictures() const;
-  const LpvReceivers* receivers() const { return receivers_ ? &receivers_->receivers() : nullptr; }
-  const ReceiversFrame* receiversFrame() const { return receivers_ ? &*receivers_ : nullptr; }
+  const IrradianceCache* irradianceCache() const { return cache_ ? &cache_->cache() : nullptr; }
+  const IrradianceCacheFrame* irradianceCacheFrame() const { return cache_ ? &*cache_ : nullptr; }
   /// Whether more frames of the same view would look the same: nothing accumulates any more.
-  bool isSettled() const { return (!receivers_ || receivers_->isSettled()) && (!path_ || path_->isSettled()); }
+  bool isSettled() const { return (!cache_ || cache_->isSettled()) && (!path_ || path_->isSettled()); }
   /// Drops everything kept from frame to frame: the next frame starts like the first.
   void forget();
   const LightPropagationVolume* lpv() const { return lpv_ ? &lpv_->volume() : nullptr; }
@@ -131,7 +131,7 @@ class Renderer {
     const auto visitIfThere = [&](auto& technique) {
       if (technique) visit(*technique);
     };
-    visitIfThere(self.rsm_), visitIfThere(self.lpv_), visitIfThere(self.receivers_);
+    visitIfThere(self.rsm_), visitIfThere(self.lpv_), visitIfThere(self.cache_);
     visitIfThere(self.radiosity_), visitIfThere(self.path_);
   }
   bool showsDirect() const;  ///< direct light of any kind, by shadow maps
@@ -165,7 +165,7 @@ class Renderer {
   // At most one of them, besides radiosity_.
   std::optional<RsmFrame> rsm_;
   std::optional<LpvFrame> lpv_;
-  std::optional<ReceiversFrame> receivers_;
+  std::optional<IrradianceCacheFrame> cache_;
   std::optional<PathFrame> path_;
   std::optional<EnvironmentView> environmentView_;
   std::optional<LightShafts> shafts_;  ///< added to the finished picture

@@ -14,7 +14,7 @@ struct StagePicture {
     normal,
     flux,
     depth,
-    irradiance,  ///< at receivers: a slice of cells per layer, faces and cascades one after the other
+    irradiance,  ///< of the irradiance cache: a slice of cells per layer, faces and cascades one after the other
     coefficients  ///< spherical harmonics of light in cells: one slice per layer, cascades one after the other
   };
   Kind kind;

@@ -159,7 +159,7 @@ struct Scene {
   std::vector<Medium> media;
   int cameraMedium = -1;  ///< index of the medium around the camera outside all boundaries; -1: vacuum
   std::optional<Environment> environment;  ///< seen behind the scene; lights it in the path tracer, in radiosity and
-                                           ///< with lpv.transport=gather or rays
+                                           ///< in the irradiance cache
   std::vector<Camera> cameras;  ///< never empty after loading: the first is the default view
   Bounds bounds;
   double metresPerUnit = 1.0;

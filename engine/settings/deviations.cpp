@@ -1,11 +1,9 @@
 #include "settings/deviations.hpp"
 
 #include "base/error.hpp"
-#include "base/log.hpp"
 
 #include <algorithm>
 #include <array>
-#include <utility>
 
 namespace lucerna {
 
@@ -103,7 +101,6 @@ void applyFidelity(RenderSettings& settings, Fidelity fidelity) {
                                                         : fidelity != Fidelity::corrected && deviation.inOriginal);
   if (fidelity == Fidelity::corrected) return;
   settings.lpv.propagate = LpvPropagate::layered;
-  settings.lpv.transport = LpvTransport::propagate;
   settings.lpv.lookup = LpvLookup::published;
   settings.lpv.lookupOffset = 0.0f;
   // The demo's cells are 2.5, 1.625 and 1.0 units, its coarsest grid 80 units in a scene of about 112; the text gives
@@ -115,11 +112,7 @@ void applyFidelity(RenderSettings& settings, Fidelity fidelity) {
 
 void applyDeviation(RenderSettings& settings, std::string_view assignment) {
   const auto equals = assignment.find('=');
-  std::string name(assignment.substr(0, equals));
-  if (name.starts_with("rad.")) {  // its former spelling
-    const std::string former = std::exchange(name, "radiosity" + name.substr(3));
-    logWarning("--deviation {}: now written {}", former, name);
-  }
+  const std::string name(assignment.substr(0, equals));
   const std::string_view value = equals == std::string_view::npos ? "" : assignment.substr(equals + 1);
   if (value != "on" && value != "off") throwBadInput("--deviation {}: expected NAME=on or NAME=off", assignment);
   if (name == "radiosity.24-bit")

@@ -7,6 +7,7 @@
 #include "forward/local_lights.hpp"
 #include "forward/shadow_map.hpp"
 #include "forward/sun_cascades.hpp"
+#include "irradiance_cache/settings.hpp"
 #include "lpv/light_propagation_volume.hpp"
 #include "pathtracer/path_deviations.hpp"
 #include "radiosity/radiosity_view.hpp"
@@ -22,8 +23,10 @@
 
 namespace lucerna {
 
-enum class Technique { direct, rsm, lpv, radiosity, path };
-constexpr std::array<std::string_view, 5> namesOf(Technique) { return {"direct", "rsm", "lpv", "radiosity", "path"}; }
+enum class Technique { direct, rsm, lpv, irradianceCache, radiosity, path };
+constexpr std::array<std::string_view, 6> namesOf(Technique) {
+  return {"direct", "rsm", "lpv", "irradiance-cache", "radiosity", "path"};
+}
 
 enum class Component { all, direct, indirect };
 constexpr std::array<std::string_view, 3> namesOf(Component) { return {"all", "direct", "indirect"}; }
@@ -39,7 +42,7 @@ enum class Fidelity { corrected, original, thesis, demo };
 constexpr std::array<std::string_view, 4> namesOf(Fidelity) { return {"corrected", "original", "thesis", "demo"}; }
 
 struct RenderSettings {
-  Technique technique = Technique::lpv;
+  Technique technique = Technique::irradianceCache;
   Component component = Component::all;
   glm::ivec2 size{1280, 720};
   bool reuse = true;  ///< stages with unchanged inputs are not run again; the same picture, bit by bit
@@ -53,6 +56,7 @@ struct RenderSettings {
                                       ///< half of it. `light` is not read
   RsmGather::Settings gather;
   LpvSettings lpv;
+  IrradianceCacheSettings cache;
   PathSettings path;
   RadiosityView::Settings radiosity;  ///< `light` is not read: the component determines it
   double unmeasuredTurns =

@@ -105,8 +105,8 @@ SettingValue mebibytes(Field, double most) {
 /// Powers of two up to 64, as required by the groups of lanes that trace paths.
 SettingValue raysOfFrame() {
   SettingValue value = valueOf(SettingType::choice, 0.0, 6.0, {"1", "2", "4", "8", "16", "32", "64"});
-  value.get = [](const RenderSettings& s) { return std::log2(static_cast<double>(s.lpv.rays)); };
-  value.set = [](RenderSettings& s, double n) { s.lpv.rays = 1 << static_cast<int>(n); };
+  value.get = [](const RenderSettings& s) { return std::log2(static_cast<double>(s.cache.rays)); };
+  value.set = [](RenderSettings& s, double n) { s.cache.rays = 1 << static_cast<int>(n); };
   return value;
 }
 
@@ -132,32 +132,26 @@ SettingValue evenNumber(Field field, double least, double most) {
 // ---------------------------------------------------------------------------------------------------- the table
 
 constexpr unsigned bit(Technique technique) { return 1u << static_cast<unsigned>(technique); }
-constexpr unsigned bit(LpvTransport transport) { return 1u << static_cast<unsigned>(transport); }
+constexpr unsigned bit(CacheTransport transport) { return 1u << static_cast<unsigned>(transport); }
 
-constexpr unsigned kDrawn = bit(Technique::direct) | bit(Technique::rsm) | bit(Technique::lpv);  // lit by shadow maps
+constexpr unsigned kDrawn = bit(Technique::direct) | bit(Technique::rsm) | bit(Technique::lpv) |
+                            bit(Technique::irradianceCache);  // lit by shadow maps
 constexpr SettingReaders kAll{kDrawn | bit(Technique::radiosity) | bit(Technique::path)};
 constexpr SettingReaders kTextured{kDrawn | bit(Technique::radiosity)}, kShadowed{kDrawn};
 constexpr SettingReaders kRsm{bit(Technique::rsm)}, kRadiosity{bit(Technique::radiosity)}, kPath{bit(Technique::path)};
-constexpr SettingReaders kLpv{bit(Technique::lpv)};
-constexpr SettingReaders kPropagate{bit(Technique::lpv), bit(LpvTransport::propagate)};
-constexpr SettingReaders kGather{bit(Technique::lpv), bit(LpvTransport::gather)};
-constexpr SettingReaders kRays{bit(Technique::lpv), bit(LpvTransport::rays)};
-constexpr SettingReaders kReceivers{bit(Technique::lpv), bit(LpvTransport::gather) | bit(LpvTransport::rays)};
-constexpr SettingReaders kMaps{bit(Technique::rsm) | bit(Technique::lpv),
-                               bit(LpvTransport::propagate) | bit(LpvTransport::gather)};
+constexpr SettingReaders kLpv{bit(Technique::lpv)}, kCache{bit(Technique::irradianceCache)};
+constexpr SettingReaders kGather{bit(Technique::irradianceCache), bit(CacheTransport::gather)};
+constexpr SettingReaders kRays{bit(Technique::irradianceCache), bit(CacheTransport::rays)};
+constexpr SettingReaders kMaps{bit(Technique::rsm) | bit(Technique::lpv) | bit(Technique::irradianceCache),
+                               bit(CacheTransport::gather)};
 
 const std::vector<Setting>& table() {
   constexpr auto uniform = SettingCost::uniform, rebuild = SettingCost::rebuild, solution = SettingCost::solution;
   static const std::vector<Setting> settings{
       // Light propagation volumes.
-      {"lpv.transport", choice(FIELD(lpv.transport)), "",
-       "how light travels: propagate, through the grids' cells; to surface points: gather, from the lights' maps, or "
-       "rays, along paths",
-       "[Kaplanyan2010]", rebuild, kLpv,
-       "rays, unless a setting or deviation is given that only another transport reads"},
       {"lpv.cells", number(FIELD(lpv.cascades.cells), 1, 128), "cells", "along each side of every cascade",
        "[Kaplanyan2010, section 5]", rebuild, kLpv, ""},
-      {"lpv.cascades", number(FIELD(lpv.cascades.cascades), 1, LPV_MAX_CASCADES), "", "nested grids",
+      {"lpv.cascades", number(FIELD(lpv.cascades.cascades), 1, MAX_CASCADES), "", "nested grids",
        "[Kaplanyan2010, section 5]", rebuild, kLpv, ""},
       {"lpv.cell-size", number(FIELD(lpv.cascades.cellSize), 0.0, 1e12, "auto"), "scene units",
        "cell size of the coarsest cascade; auto: half of its cells span the scene", "", rebuild, kLpv, ""},
@@ -167,60 +161,75 @@ const std::vector<Setting>& table() {
        "offset of the grids ahead of the camera", "[LPV2015, 6.4]", rebuild, kLpv, ""},
       {"lpv.blend", number(FIELD(lpv.blendBand), 0.001, 1.0), "half extents",
        "width of the band over which a cascade fades into the next", "[Kaplanyan2010, section 5]", rebuild, kLpv, ""},
-      {"lpv.bounces", number(FIELD(lpv.bounces), 1, 64, "all", LpvSettings::kAllBounces), "",
-       "reflections before light reaches a surface; all: not with transport propagate", "[Kaplanyan2010]", rebuild,
-       kLpv, "1 with transport propagate, else all"},
+      {"lpv.bounces", number(FIELD(lpv.bounces), 1, 64), "", "reflections before light reaches a surface",
+       "[Kaplanyan2010]", rebuild, kLpv, ""},
       {"lpv.iterations", number(FIELD(lpv.iterations), 0, 100000), "steps", "propagation steps",
-       "[Kaplanyan2010, section 4.3]", rebuild, kPropagate, ""},
+       "[Kaplanyan2010, section 4.3]", rebuild, kLpv, ""},
       {"lpv.blocking", blocking(), "", "source of the surfels in the geometry volume, which blocks light; off: none",
-       "[Kaplanyan2010, section 4.2]", rebuild, kPropagate, ""},
+       "[Kaplanyan2010, section 4.2]", rebuild, kLpv, ""},
       {"lpv.lookup", choice(FIELD(lpv.lookup)), "",
        "irradiance from propagated light: flux, as the kernel sends it through a face; published, 1.91 times as much",
-       "[Kaplanyan2010]", rebuild, kPropagate, ""},
+       "[Kaplanyan2010]", rebuild, kLpv, ""},
       {"lpv.lookup-offset", optionalNumber(FIELD(lpv.lookupOffset), 0.0, 4.0), "cells",
-       "offset along the normal before the lookup", "[Kaplanyan2010]", rebuild, kPropagate,
+       "offset along the normal before the lookup", "[Kaplanyan2010]", rebuild, kLpv,
        "auto: 0, with lpv.lookup=published 0.5"},
       {"lpv.hand-over", number(FIELD(lpv.handOver), 0, 100000, "auto"), "steps",
        "steps after which finer cascades take a coarser one's light; auto: from iterations and ratio", "", rebuild,
-       kPropagate, ""},
+       kLpv, ""},
       {"lpv.shafts", boolean(FIELD(lpv.shafts)), "",
-       "light shafts: single scattering along the view in the scene's homogeneous medium", "[LPV2015]", rebuild,
-       kPropagate, ""},
+       "light shafts: single scattering along the view in the scene's homogeneous medium", "[LPV2015]", rebuild, kLpv,
+       ""},
       {"lpv.shaft-steps", number(FIELD(lpv.shaftSteps), 1, 4096), "steps", "of light shafts along a view ray", "",
-       rebuild, kPropagate, ""},
+       rebuild, kLpv, ""},
       {"lpv.glossy", boolean(FIELD(lpv.glossy)), "",
        "glossy reflection of the volume's light, along reflected rays to the first surfels of the geometry volume", "",
-       rebuild, kPropagate, ""},
+       rebuild, kLpv, ""},
       {"lpv.glossy-steps", number(FIELD(lpv.glossySteps), 1, 1024), "cells", "along a reflected ray, at most", "",
-       rebuild, kPropagate, ""},
-      // More of them: filling, propagation, receivers.
+       rebuild, kLpv, ""},
       {"lpv.fill", choice(FIELD(lpv.fill)), "",
        "how the grid is filled: layered, by blending; atomic, in floats; fixed, in integers, the same bits every run",
-       "", rebuild, kPropagate, ""},
+       "", rebuild, kLpv, ""},
       {"lpv.tile", number(FIELD(lpv.tile), 1, 16), "texels",
        "with lpv.fill=atomic or fixed: side of the square added up before an atomic; 1: one atomic per texel, as "
        "published",
-       "[LPV2015]", rebuild, kPropagate, ""},
+       "[LPV2015]", rebuild, kLpv, ""},
       {"lpv.propagate", choice(FIELD(lpv.propagate)), "",
-       "compute; layered: one pass per step and cascade, one point per cell, as published",
-       "[LPV2015]", rebuild, kPropagate, ""},
-      {"lpv.amplifier", number(FIELD(lpv.amplifier), 0.0, 100.0), "",
-       "factor of the deviation lpv.four-pi-kernel; 4 conserves energy", "[LPV2015]", rebuild, kPropagate, ""},
-      {"lpv.visibility", choice(FIELD(lpv.visibility)), "",
-       "occlusion of light gathered from maps and emissive surfaces: none, or by rays", "", rebuild, kGather, ""},
-      {"lpv.bounce-cells", number(FIELD(lpv.bounceCells), 1, 64), "cells",
-       "along the longest side of the scene: of the points that keep light of further bounces", "", rebuild, kGather,
+       "compute; layered: one pass per step and cascade, one point per cell, as published", "[LPV2015]", rebuild, kLpv,
        ""},
-      {"lpv.rays", raysOfFrame(), "paths", "per receiver and frame", "", rebuild, kRays, ""},
-      {"lpv.least-rays", number(FIELD(lpv.leastRays), 1, 1 << 20), "paths",
-       "at least, of a receiver in its first frame", "", rebuild, kRays, ""},
-      {"lpv.samples", number(FIELD(lpv.samples), 1, 1 << 24), "paths",
-       "of a receiver while light and geometry are static", "", rebuild, kRays, ""},
-      {"lpv.around", number(FIELD(lpv.around), 0, 1 << 16), "directions",
-       "around the camera, in which surfaces have receivers before they come into view, while it moves", "", rebuild,
-       kReceivers, ""},
-      {"lpv.most-change", number(FIELD(lpv.mostChange), 0.0, 1.0), "",
-       "largest relative change of a receiver's light that is shown in a frame; 0: any", "", rebuild, kReceivers, ""},
+      {"lpv.amplifier", number(FIELD(lpv.amplifier), 0.0, 100.0), "",
+       "factor of the deviation lpv.four-pi-kernel; 4 conserves energy", "[LPV2015]", rebuild, kLpv, ""},
+      // The irradiance cache.
+      {"cache.transport", choice(FIELD(cache.transport)), "",
+       "source of a record's light: rays, along paths; gather, from the lights' maps and a bounce cache", "", rebuild,
+       kCache, ""},
+      {"cache.cells", number(FIELD(cache.cascades.cells), 1, 128), "cells", "along each side of every cascade", "",
+       rebuild, kCache, ""},
+      {"cache.cascades", number(FIELD(cache.cascades.cascades), 1, MAX_CASCADES), "", "nested grids",
+       "[Kaplanyan2010, section 5]", rebuild, kCache, ""},
+      {"cache.cell-size", number(FIELD(cache.cascades.cellSize), 0.0, 1e12, "auto"), "scene units",
+       "cell size of the coarsest cascade; auto: half of its cells span the scene", "", rebuild, kCache, ""},
+      {"cache.ratio", number(FIELD(cache.cascades.ratio), 1.0, 16.0), "",
+       "ratio of a cascade's cell size to the next finer one's", "", rebuild, kCache, ""},
+      {"cache.push", number(FIELD(cache.cascades.push), 0.0, 1.0), "half extents",
+       "offset of the grids ahead of the camera", "[LPV2015, 6.4]", rebuild, kCache, ""},
+      {"cache.blend", number(FIELD(cache.blendBand), 0.001, 1.0), "of its reach",
+       "width of the band over which a cascade fades into the next", "", rebuild, kCache, ""},
+      {"cache.bounces", number(FIELD(cache.bounces), 1, 64, "all", IrradianceCacheSettings::kAllBounces), "",
+       "reflections before light reaches a surface", "", rebuild, kCache, ""},
+      {"cache.visibility", choice(FIELD(cache.visibility)), "",
+       "occlusion of light gathered from maps and emissive surfaces: none, or by rays", "", rebuild, kGather, ""},
+      {"cache.bounce-cells", number(FIELD(cache.bounceCells), 1, 64), "cells",
+       "along the longest side of the scene: of the bounce cache", "", rebuild, kGather, ""},
+      {"cache.rays", raysOfFrame(), "paths", "per record and frame", "", rebuild, kRays, ""},
+      {"cache.least-rays", number(FIELD(cache.leastRays), 1, 1 << 20), "paths",
+       "of a record in its first frame, at least", "", rebuild, kRays, ""},
+      {"cache.samples", number(FIELD(cache.samples), 1, 1 << 24), "paths",
+       "of a record while light and geometry are static", "", rebuild, kRays, ""},
+      {"cache.prefetch", number(FIELD(cache.prefetch), 0, 1 << 16), "directions",
+       "around the camera, in which surfaces get records before they come into view, while it moves", "", rebuild,
+       kCache, ""},
+      {"cache.most-change", number(FIELD(cache.mostChange), 0.0, 1.0), "",
+       "largest relative change of a record's shown irradiance per frame; 0: no limit", "", rebuild, kCache, ""},
       // Reflective shadow maps and their gather.
       {"rsm.size", number(FIELD(rsm.size), 1, 8192), "texels",
        "side of the reflective shadow map; an omnidirectional light's faces have half of it", "[Dachsbacher2005]",
@@ -329,8 +338,8 @@ const std::vector<Setting>& table() {
        "anisotropic filtering of what is seen, at most; 1 without mipmaps", "", rebuild, kTextured, ""},
       {"texture.mipmaps", boolean(FIELD(textures.mipmaps)), "",
        "textures in smaller versions with distance; off: they flicker", "[LPV2015]", rebuild, kTextured, ""},
-      {"frame.reuse", boolean(FIELD(reuse)), "",
-       "reuse unchanged results of the previous frame: maps, volume, receivers", "", uniform, kTextured, ""},
+      {"frame.reuse", boolean(FIELD(reuse)), "", "reuse unchanged results of the previous frame: maps, volume, cache",
+       "", uniform, kTextured, ""},
       {"exposure", optionalNumber(FIELD(exposure), 1e-12, 1e12), "", "multiplies radiance before tone mapping", "",
        uniform, kAll, "auto: the scene's"},
   };
@@ -338,14 +347,6 @@ const std::vector<Setting>& table() {
 }
 
 #undef FIELD
-
-/// A former spelling, found in old scripts, and today's.
-struct Former {
-  std::string_view was, is;
-};
-constexpr Former kFormer[] = {{"rsm.near", "rsm.near-field"},
-                              {"rad.near", "radiosity.part-distance"},
-                              {"radiosity.near", "radiosity.part-distance"}};
 
 // ---------------------------------------------------------------------------------------------------- text
 
@@ -391,15 +392,7 @@ std::optional<double> parsed(std::string_view text) {
 
 std::span<const Setting> allSettings() { return table(); }
 
-std::string formerKey(std::string_view key) {
-  for (const Former& former : kFormer)
-    if (key == former.was) return std::string(former.is);
-  return key.starts_with("rad.") ? "radiosity." + std::string(key.substr(4)) : "";
-}
-
 const Setting* findSetting(std::string_view key) {
-  const std::string now = formerKey(key);
-  if (!now.empty()) key = now;
   const auto found = std::find_if(table().begin(), table().end(), [&](const Setting& s) { return s.key == key; });
   return found == table().end() ? nullptr : &*found;
 }
@@ -439,7 +432,6 @@ void parseSetting(const Setting& setting, RenderSettings& settings, std::string_
         if (text == off) return set(0.0);
       refuse(setting, text, where);
     case SettingType::choice: {
-      if (setting.key == "lpv.blocking" && text == "on") text = "rsm";  // its first spelling
       const auto found = std::find(value.choices.begin(), value.choices.end(), text);
       if (found == value.choices.end()) refuse(setting, text, where);
       return set(static_cast<double>(found - value.choices.begin()));
@@ -490,18 +482,24 @@ bool isReadBy(const Setting& setting, Technique technique) {
   return (setting.readers.techniques & bit(technique)) != 0;
 }
 
-bool isReadBy(const Setting& setting, LpvTransport transport) {
-  return isReadBy(setting, Technique::lpv) && (setting.readers.transports & bit(transport)) != 0;
+bool isReadBy(const Setting& setting, CacheTransport transport) {
+  return isReadBy(setting, Technique::irradianceCache) && (setting.readers.transports & bit(transport)) != 0;
 }
 
 bool isRead(const Setting& setting, const RenderSettings& settings) {
-  return settings.technique == Technique::lpv ? isReadBy(setting, settings.lpv.transport)
-                                              : isReadBy(setting, settings.technique);
+  return settings.technique == Technique::irradianceCache ? isReadBy(setting, settings.cache.transport)
+                                                          : isReadBy(setting, settings.technique);
 }
 
-std::optional<LpvTransport> onlyTransport(const Setting& setting) {
-  for (const LpvTransport transport : {LpvTransport::propagate, LpvTransport::gather, LpvTransport::rays})
-    if (isReadBy(setting, Technique::lpv) && setting.readers.transports == bit(transport)) return transport;
+std::optional<Technique> onlyTechnique(const Setting& setting) {
+  for (std::size_t i = 0; i < namesOf(Technique{}).size(); ++i)
+    if (setting.readers.techniques == 1u << i) return static_cast<Technique>(i);
+  return {};
+}
+
+std::optional<CacheTransport> onlyTransport(const Setting& setting) {
+  for (const CacheTransport transport : {CacheTransport::rays, CacheTransport::gather})
+    if (isReadBy(setting, Technique::irradianceCache) && setting.readers.transports == bit(transport)) return transport;
   return {};
 }
 

@@ -28,9 +28,9 @@ enum class SettingCost {
 };
 constexpr std::array<std::string_view, 3> namesOf(SettingCost) { return {"uniform", "rebuild", "solution"}; }
 
-/// Readers of a setting: bits 1 << Technique, and for the light propagation volume 1 << LpvTransport.
+/// Readers of a setting: bits 1 << Technique, and for the irradiance cache 1 << CacheTransport.
 struct SettingReaders {
-  unsigned techniques = 0, transports = 7;
+  unsigned techniques = 0, transports = 3;
 };
 
 /// Type, range and location of a value. As numbers, switches are 0 and 1, choices their index in `choices`.
@@ -60,10 +60,8 @@ struct Setting {
 
 std::span<const Setting> allSettings();
 
-/// Null if there is none. Former spellings of keys are understood, see formerKey().
+/// Null if there is none.
 const Setting* findSetting(std::string_view key);
-/// Today's key for a former spelling; empty if `key` is not one.
-std::string formerKey(std::string_view key);
 
 /// The value in the form that --set takes.
 std::string printSetting(const Setting& setting, const RenderSettings& settings);
@@ -90,12 +88,13 @@ std::string allowedValues(const Setting& setting);
 /// The default in the form that --set takes, or in words.
 std::string defaultValue(const Setting& setting);
 
-/// Whether the technique of `settings` (for the light propagation volume, its transport) reads the setting.
+/// Whether the technique of `settings` (for the irradiance cache, its transport) reads the setting.
 bool isRead(const Setting& setting, const RenderSettings& settings);
 bool isReadBy(const Setting& setting, Technique technique);
-bool isReadBy(const Setting& setting, LpvTransport transport);  ///< for the light propagation volume
-/// The only transport of the light propagation volume that reads the setting; none if several do, or that technique
-/// does not.
-std::optional<LpvTransport> onlyTransport(const Setting& setting);
+bool isReadBy(const Setting& setting, CacheTransport transport);  ///< for the irradiance cache
+/// The only one that reads the setting; none if several do.
+std::optional<Technique> onlyTechnique(const Setting& setting);
+/// The only transport of the irradiance cache that reads the setting; none if several do, or that technique does not.
+std::optional<CacheTransport> onlyTransport(const Setting& setting);
 
 }  // namespace lucerna

@@ -7,13 +7,13 @@ uniform vec3 askedPosition;
 uniform vec3 askedNormal;
 
 void main() {
-  int cells = lpv.shape.x;
+  int cells = grids.shape.x;
   float left = 1.0;
-  for (int k = 0; k < lpv.shape.y && left > 0.0; ++k) {
+  for (int k = 0; k < grids.shape.y && left > 0.0; ++k) {
 #if SUM_CASCADES
     float weight = 1.0;
 #else
-    float weight = left * lpvCascadeWeight(k, askedPosition);
+    float weight = left * cascadeWeight(k, askedPosition);
     left -= weight;
 #endif
     float border;
@@ -21,7 +21,7 @@ void main() {
     vec4 lobe = lpvLobe(askedNormal);
     for (int i = 0; i < 8; ++i) {
       ivec3 corner = ivec3(i & 1, i >> 1 & 1, i >> 2),
-            texel = clampedInt(floor(place), ivec3(-2), ivec3(cells, cells, cells * lpv.shape.y)) + corner;
+            texel = clampedInt(floor(place), ivec3(-2), ivec3(cells, cells, cells * grids.shape.y)) + corner;
       vec3 near = mix(1.0 - fract(place), fract(place), vec3(corner));
       float share = weight * border * near.x * near.y * near.z;
       ivec3 cell = texel - ivec3(0, 0, k * cells);
@@ -30,10 +30,10 @@ void main() {
       part.red = texelFetch(lpvRed, texel, 0);
       part.green = texelFetch(lpvGreen, texel, 0);
       part.blue = texelFetch(lpvBlue, texel, 0);
-      part.irradiance = (share * 4.0 / kPi * lpv.referenceIrradiance) *
+      part.irradiance = (share * 4.0 / kPi * grids.referenceIrradiance) *
                         vec3(dot(part.red, lobe), dot(part.green, lobe), dot(part.blue, lobe));
       part.weight = share;
-      part.place = lpv.cascades[k].minimum + lpv.cascades[k].cellSize * (vec3(cell) + 0.5);
+      part.place = grids.cascades[k].minimum + grids.cascades[k].cellSize * (vec3(cell) + 0.5);
       part.padding = 0.0;
       part.number = ivec4(cell, k);
       tellPart(part);

@@ -6,7 +6,7 @@
 // comparable. The quotient is taken here, per cell, and lpv/join.comp interpolates it. Interpolating the two
 // brightnesses instead lets dark cells behind walls leak into the quotient next to them, which then no longer preserves
 // a cell's mean (engine/lpv/README.md has the figures).
-#include "lpv/common.glsl"
+#include "cascades/block.glsl"
 #include "lpv/stacked.glsl"
 #include "lpv/sums.glsl"
 layout(local_size_x = GROUP_X, local_size_y = GROUP_Y, local_size_z = 1) in;
@@ -19,7 +19,7 @@ const float kDark = 1e-4;           // c / (E_ref s^2) below which there is noth
 
 void main() {
   ivec3 at = ivec3(gl_GlobalInvocationID);
-  int cells = lpv.shape.x, pairs = (cells + 1) / 2;
+  int cells = grids.shape.x, pairs = (cells + 1) / 2;
   if (any(greaterThanEqual(at, ivec3(pairs)))) return;
   float own = 0.0;
   for (int i = 0; i < 8; ++i) {

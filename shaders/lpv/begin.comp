@@ -1,6 +1,6 @@
 // Copies the light to propagate, as coefficients, from the textures filled by blending into a buffer of the propagation
 // steps: the first front.
-#include "lpv/common.glsl"
+#include "cascades/block.glsl"
 layout(local_size_x = GROUP_X, local_size_y = GROUP_Y, local_size_z = 1) in;
 layout(binding = 0) uniform sampler3D injectedRed;
 layout(binding = 1) uniform sampler3D injectedGreen;
@@ -9,7 +9,7 @@ layout(std430, binding = 0) writeonly buffer Front { vec4 front[]; };
 
 void main() {
   ivec3 cell = ivec3(gl_GlobalInvocationID);
-  int cells = lpv.shape.x, layers = cells * lpv.shape.y;
+  int cells = grids.shape.x, layers = cells * grids.shape.y;
   if (any(greaterThanEqual(cell, ivec3(cells, cells, layers)))) return;
   int at = (cell.z * cells + cell.y) * cells + cell.x, channel = cells * cells * layers;
   front[at] = texelFetch(injectedRed, cell, 0);

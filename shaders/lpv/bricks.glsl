@@ -2,7 +2,7 @@
 //
 // The lit cells of a front mark the neighbouring bricks they touch. Between two steps lpv/list_bricks.comp appends
 // newly marked bricks to the list. Bricks are never removed from the list, so a brick that is not on it has not been
-// written since the buffers were cleared. Needs lpv/common.glsl.
+// written since the buffers were cleared. Needs cascades/block.glsl.
 const int kBrick = 4;
 
 layout(std430, binding = 4) buffer Bricks {
@@ -14,12 +14,12 @@ layout(std430, binding = 4) buffer Bricks {
 };
 const uint kGroupsInRow = 64u;  // must match the engine's groups[0]
 
-int bricksOfAxis() { return (lpv.shape.x + kBrick - 1) / kBrick; }
-int brickCount() { return bricksOfAxis() * bricksOfAxis() * bricksOfAxis() * lpv.shape.y; }
+int bricksOfAxis() { return (grids.shape.x + kBrick - 1) / kBrick; }
+int brickCount() { return bricksOfAxis() * bricksOfAxis() * bricksOfAxis() * grids.shape.y; }
 
 // Marks the bricks next to its own that a lit cell of a cascade can reach.
 void markNeighbours(ivec3 local, int brick) {
-  int ofAxis = bricksOfAxis(), reached = brickCount() + brick, cells = lpv.shape.x;
+  int ofAxis = bricksOfAxis(), reached = brickCount() + brick, cells = grids.shape.x;
   ivec3 inBrick = local % kBrick;
   ivec3 way = ivec3(equal(inBrick, ivec3(kBrick - 1))) - ivec3(equal(inBrick, ivec3(0)));
   ivec3 beyond = local + way;

@@ -6,7 +6,7 @@
 #extension GL_NV_shader_atomic_float : require
 #endif
 #include "lib/sh.glsl"
-#include "lpv/common.glsl"
+#include "cascades/block.glsl"
 #include "lpv/fixed.glsl"
 #include "lpv/surfel.glsl"
 #include "lpv/tile.glsl"
@@ -28,9 +28,9 @@ void main() {
   ivec3 tile = ivec3(gl_GlobalInvocationID);  // z: layer of the map
   ivec3 size = textureSize(rsmPosition, 0);
   if (any(greaterThanEqual(ivec3(kTile * tile.xy, tile.z), size))) return;
-  int corners = lpv.shape.x + 1;
-  for (int k = 0; k < lpv.shape.y; ++k) {
-    float s = lpv.cascades[k].cellSize, steps = stepsOfCascade(k, fixedScale);
+  int corners = grids.shape.x + 1;
+  for (int k = 0; k < grids.shape.y; ++k) {
+    float s = grids.cascades[k].cellSize, steps = stepsOfCascade(k, fixedScale);
     runCorner = -1;
     run = COUNT_TYPE(0);
     for (int i = 0; i < kTile * kTile; ++i) {

@@ -2,10 +2,10 @@
 // of the geometry volume. That volume is shifted by half a cell, so that its cell centres lie on the grid's corners. A
 // is the surface's true area, which the reflective shadow map stores next to the flux.
 #include "lib/sh.glsl"
-#include "lpv/common.glsl"
+#include "cascades/block.glsl"
 #include "lpv/surfel.glsl"
 layout(points) in;
-layout(points, max_vertices = LPV_MAX_CASCADES) out;
+layout(points, max_vertices = MAX_CASCADES) out;
 in vec4 gPosition[];
 in vec4 gNormal[];
 in vec4 gFlux[];  // w = area
@@ -22,7 +22,7 @@ uniform float texelCount;  // 0: a perspective light, which has true areas
 void main() {
   vec3 normal = gNormal[0].xyz;
   if (!isUsableSurfel(gPosition[0], normal, gFlux[0].w)) return;
-  int corners = lpv.shape.x + 1;
+  int corners = grids.shape.x + 1;
   float area = gFlux[0].w;
 #if SURFEL_AREA
   // Deviation lpv.surfel-area: uses the formula of a 90 degree perspective light, weighted by N.L, for an orthographic
@@ -30,8 +30,8 @@ void main() {
   vec3 away = gPosition[0].xyz - lightPosition;
   if (texelCount > 0.0) area = 4.0 * dot(away, away) / texelCount * gNormal[0].w;
 #endif
-  for (int k = 0; k < lpv.shape.y; ++k) {
-    float s = lpv.cascades[k].cellSize;
+  for (int k = 0; k < grids.shape.y; ++k) {
+    float s = grids.cascades[k].cellSize;
     ivec3 corner;
     if (!surfelCorner(k, gPosition[0].xyz, corner)) continue;
     fPotential = area / (s * s) * shCosineLobe(normal);

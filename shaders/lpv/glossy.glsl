@@ -11,6 +11,7 @@
 // them 1 / cos times, so a closed surface covers all of it. Light is read once, a cell before half of the ray is
 // covered: behind a surface it is dark, and software renderers would run a lookup in every step.
 // Bound: rho takes at most what the diffuse reflection leaves, 1 - albedo.
+#include "shared/lpv.h"
 #include "lpv/radiance.glsl"
 layout(binding = UNIT_LPV_LOBES) uniform sampler2D lpvLobes;
 
@@ -25,10 +26,10 @@ void glossyLobe(float cosine, float alpha, out vec3 facets, out vec3 grazing) {
 
 float lpvCellSizeAt(vec3 position) {
   float size = 0.0, left = 1.0;
-  for (int k = 0; k < lpv.shape.y && left > 0.0; ++k) {
-    float weight = left * lpvCascadeWeight(k, position);
+  for (int k = 0; k < grids.shape.y && left > 0.0; ++k) {
+    float weight = left * cascadeWeight(k, position);
     left -= weight;
-    size += weight * lpv.cascades[k].cellSize;
+    size += weight * grids.cascades[k].cellSize;
   }
   return size;
 }
@@ -37,16 +38,17 @@ layout(binding = UNIT_LPV_GEOMETRY) uniform sampler3D lpvGeometry;
 
 // Part of a ray's cross section that surfels facing its origin cover in a cell.
 float lpvCovered(vec3 position, vec3 direction) {
-  float corners = float(lpv.shape.x + 1), left = 1.0;
+  float corners = float(grids.shape.x + 1), left = 1.0;
   vec3 potential = vec3(0.0);
-  for (int k = 0; k < lpv.shape.y && left > 0.0; ++k) {
-    float weight = left * lpvCascadeWeight(k, position);
+  for (int k = 0; k < grids.shape.y && left > 0.0; ++k) {
+    float weight = left * cascadeWeight(k, position);
     left -= weight;
     if (weight <= 0.0) continue;
-    vec3 texel = (position - lpv.cascades[k].minimum) / lpv.cascades[k].cellSize + 0.5;  // samples lie on the corners
+    // Samples lie on the corners.
+    vec3 texel = (position - grids.cascades[k].minimum) / grids.cascades[k].cellSize + 0.5;
     float border = clamp(min(texel.z, corners - texel.z) + 0.5, 0.0, 1.0);
     texel.z = clamp(texel.z, 0.5, corners - 0.5) + float(k) * corners;
-    vec3 place = texel / vec3(corners, corners, corners * float(lpv.shape.y));
+    vec3 place = texel / vec3(corners, corners, corners * float(grids.shape.y));
     potential += weight * border * textureLod(lpvGeometry, place, 0.0).yzw;
   }
   return clamp(-2.0 * kY1 * dot(potential, direction), 0.0, 1.0);
@@ -55,7 +57,7 @@ float lpvCovered(vec3 position, vec3 direction) {
 mat3x4 lpvLightAlong(vec3 position, vec3 direction) {
   float left = 1.0;
   vec3 at = position + lpvCellSizeAt(position) * direction;  // a surface does not meet itself
-  for (int i = 1; i < lpv.shape.z; ++i) {
+  for (int i = 1; i < grids.shape.z; ++i) {
     vec3 next = at + lpvCellSizeAt(at) * direction;
     left -= lpvCovered(next, direction);
     if (left < 0.5) break;
@@ -99,5 +101,5 @@ vec3 lpvGlossy(vec3 position, vec3 normal, vec3 toCamera, vec3 albedo, vec3 spec
     vec3 moment = lobe.y * across + lobe.z * normal;
     reflected[c] = max(dot(light[c], vec4(kY00 * lobe.x, -kY1 * moment)), 0.0);
   }
-  return reflected * lpv.referenceIrradiance;
+  return reflected * grids.referenceIrradiance;
 }

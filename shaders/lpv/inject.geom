@@ -1,10 +1,10 @@
 // Puts a virtual point light into one cell of every cascade that contains it: gl_Layer selects the slice, and blending
 // adds [LPV2015, 6.4.2].
 #include "lib/sh.glsl"
-#include "lpv/common.glsl"
+#include "cascades/block.glsl"
 #include "lpv/vpl.glsl"
 layout(points) in;
-layout(points, max_vertices = LPV_MAX_CASCADES) out;
+layout(points, max_vertices = MAX_CASCADES) out;
 in vec4 gPosition[];
 in vec4 gNormal[];
 in vec4 gFlux[];
@@ -18,8 +18,8 @@ void main() {
   vec3 normal = gNormal[0].xyz;
   vec3 flux = gFlux[0].rgb;
   if (!isUsableVpl(gPosition[0], normal, flux)) return;
-  int cells = lpv.shape.x;
-  for (int k = 0; k < lpv.shape.y; ++k) {
+  int cells = grids.shape.x;
+  for (int k = 0; k < grids.shape.y; ++k) {
     ivec3 cell;
     if (!vplCell(k, gPosition[0].xyz, normal, cell)) continue;
     vec4 lobe = vplLobe(k, normal, fluxScale);

@@ -15,7 +15,7 @@
 #extension GL_NV_shader_atomic_fp16_vector : require
 #endif
 #include "lib/sh.glsl"
-#include "lpv/common.glsl"
+#include "cascades/block.glsl"
 #include "lpv/fixed.glsl"
 #include "lpv/tile.glsl"
 #include "lpv/vpl.glsl"
@@ -39,14 +39,14 @@ int runCell;        // index in the stack of cascades; -1: none yet
 
 void addRun() {
   if (runCell < 0) return;
-  int cells = lpv.shape.x;
+  int cells = grids.shape.x;
 #if FILL_HALF
   ivec3 at = ivec3(runCell % cells, runCell / cells % cells, runCell / (cells * cells));
   imageAtomicAdd(countRed, at, f16vec4(run[0]));
   imageAtomicAdd(countGreen, at, f16vec4(run[1]));
   imageAtomicAdd(countBlue, at, f16vec4(run[2]));
 #else
-  int word = 4 * runCell, channel = 4 * cells * cells * cells * lpv.shape.y;
+  int word = 4 * runCell, channel = 4 * cells * cells * cells * grids.shape.y;
   ADD_TO(word, run[0])
   ADD_TO(word + channel, run[1])
   ADD_TO(word + 2 * channel, run[2])
@@ -57,8 +57,8 @@ void main() {
   ivec3 tile = ivec3(gl_GlobalInvocationID);  // z: layer of the map
   ivec3 size = textureSize(rsmPosition, 0);
   if (any(greaterThanEqual(ivec3(kTile * tile.xy, tile.z), size))) return;
-  int cells = lpv.shape.x;
-  for (int k = 0; k < lpv.shape.y; ++k) {
+  int cells = grids.shape.x;
+  for (int k = 0; k < grids.shape.y; ++k) {
     float steps = stepsOfCascade(k, fixedScale);
     runCell = -1;
     run = COUNT_TYPE[3](COUNT_TYPE(0), COUNT_TYPE(0), COUNT_TYPE(0));

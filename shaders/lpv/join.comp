@@ -8,7 +8,7 @@
 // finer grid takes over F from the coarser grids: every step of the light counts once, and nothing is ever subtracted.
 // The balance b_k (lpv/balance.comp) makes the finer grid as bright, averaged over a coarser cell, as the M it
 // replaces. It therefore adds detail and preserves brightness.
-#include "lpv/common.glsl"
+#include "cascades/block.glsl"
 #include "lpv/stacked.glsl"
 #include "lpv/sums.glsl"
 #include "lpv/result.glsl"
@@ -23,7 +23,7 @@ uniform int cascade;
 
 // Interpolates between the balances, one per 2x2x2 cells; clamps at the border.
 float balanceAt(ivec3 cell) {
-  int pairs = (lpv.shape.x + 1) / 2;
+  int pairs = (grids.shape.x + 1) / 2;
   vec3 texel = 0.5 * (vec3(cell) + 0.5) - 0.5;
   ivec3 low = ivec3(floor(texel));  // bounded: half a cell's index
   vec3 upper = texel - vec3(low);
@@ -38,10 +38,10 @@ float balanceAt(ivec3 cell) {
 
 void main() {
   ivec3 cell = ivec3(gl_GlobalInvocationID);
-  int cells = lpv.shape.x;
+  int cells = grids.shape.x;
   if (any(greaterThanEqual(cell, ivec3(cells)))) return;
   ivec3 inStack = ivec3(cell.xy, cascade * cells + cell.z);
-  int at = (inStack.z * cells + cell.y) * cells + cell.x, channel = cells * cells * cells * lpv.shape.y;
+  int at = (inStack.z * cells + cell.y) * cells + cell.x, channel = cells * cells * cells * grids.shape.y;
 
   vec4 coarser[3] = vec4[3](vec4(0.0), vec4(0.0), vec4(0.0));
   float balance = 1.0;

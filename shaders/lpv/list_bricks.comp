@@ -1,5 +1,5 @@
 // Appends newly marked bricks to the list, in any order: no cell's light depends on it.
-#include "lpv/common.glsl"
+#include "cascades/block.glsl"
 #include "lpv/bricks.glsl"
 layout(local_size_x = 64) in;
 

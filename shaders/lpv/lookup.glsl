@@ -15,16 +15,16 @@
 // as published.
 #include "shared/bindings.h"
 #include "lib/sh.glsl"
-#include "lpv/common.glsl"
-#include "lpv/cascade_weight.glsl"
+#include "cascades/block.glsl"
+#include "cascades/weight.glsl"
 layout(binding = UNIT_LPV_RED) uniform sampler3D lpvRed;
 layout(binding = UNIT_LPV_GREEN) uniform sampler3D lpvGreen;
 layout(binding = UNIT_LPV_BLUE) uniform sampler3D lpvBlue;
 
 // Texel position in the stack for a lookup in cascade k; border: 0 outside the cascade, where the sampler cannot tell.
 vec3 lpvPlace(int k, vec3 position, vec3 normal, out float border) {
-  float cells = float(lpv.shape.x);
-  vec3 texel = (position - lpv.cascades[k].minimum) / lpv.cascades[k].cellSize + lpv.lookupOffset * normal;
+  float cells = float(grids.shape.x);
+  vec3 texel = (position - grids.cascades[k].minimum) / grids.cascades[k].cellSize + grids.lookupOffset * normal;
   // In x and y the sampler's border of zeros ends the cascade; along z, where the next cascade's layers follow, it is
   // done by hand.
   border = clamp(min(texel.z, cells - texel.z) + 0.5, 0.0, 1.0);
@@ -49,12 +49,12 @@ vec4 lpvLobe(vec3 normal) {
 }
 
 vec3 lpvCascadeIrradiance(int k, vec3 position, vec3 normal) {
-  float cells = float(lpv.shape.x), border;
-  vec3 uvw = lpvPlace(k, position, normal, border) / vec3(cells, cells, cells * float(lpv.shape.y));
+  float cells = float(grids.shape.x), border;
+  vec3 uvw = lpvPlace(k, position, normal, border) / vec3(cells, cells, cells * float(grids.shape.y));
   vec4 lobe = lpvLobe(normal);
   vec3 c = vec3(dot(textureLod(lpvRed, uvw, 0.0), lobe), dot(textureLod(lpvGreen, uvw, 0.0), lobe),
                 dot(textureLod(lpvBlue, uvw, 0.0), lobe));
-  return max(c, 0.0) * (border * 4.0 / kPi * lpv.referenceIrradiance);
+  return max(c, 0.0) * (border * 4.0 / kPi * grids.referenceIrradiance);
 }
 
 // From the finest cascade to the coarsest, each blended into the next near its border; the weights sum to 1.
@@ -62,12 +62,12 @@ vec3 lpvIrradiance(vec3 position, vec3 normal) {
   vec3 irradiance = vec3(0.0);
 #if SUM_CASCADES
   // Deviation lpv.sum-cascades: every cascade adds its light on top.
-  for (int k = 0; k < lpv.shape.y; ++k) irradiance += lpvCascadeIrradiance(k, position, normal);
+  for (int k = 0; k < grids.shape.y; ++k) irradiance += lpvCascadeIrradiance(k, position, normal);
   return irradiance;
 #endif
   float left = 1.0;
-  for (int k = 0; k < lpv.shape.y && left > 0.0; ++k) {
-    float weight = left * lpvCascadeWeight(k, position);
+  for (int k = 0; k < grids.shape.y && left > 0.0; ++k) {
+    float weight = left * cascadeWeight(k, position);
     if (weight > 0.0) irradiance += weight * lpvCascadeIrradiance(k, position, normal);
     left -= weight;
   }

@@ -1,5 +1,5 @@
 // Marks the bricks that contain light of the first front, and those next to its lit cells.
-#include "lpv/common.glsl"
+#include "cascades/block.glsl"
 #include "lpv/bricks.glsl"
 layout(local_size_x = GROUP_X, local_size_y = GROUP_Y, local_size_z = 1) in;
 layout(binding = 0) uniform samplerBuffer front;
@@ -7,7 +7,7 @@ uniform bool everywhere;  // all bricks, lit or not
 
 void main() {
   ivec3 cell = ivec3(gl_GlobalInvocationID);
-  int cells = lpv.shape.x, layers = cells * lpv.shape.y;
+  int cells = grids.shape.x, layers = cells * grids.shape.y;
   if (any(greaterThanEqual(cell, ivec3(cells, cells, layers)))) return;
   int at = (cell.z * cells + cell.y) * cells + cell.x, channel = cells * cells * layers;
   bool dark = texelFetch(front, at) == vec4(0.0) && texelFetch(front, at + channel) == vec4(0.0) &&

@@ -4,7 +4,7 @@
 // A front lies in one buffer, cell by cell, x fastest, all red, then green, then blue; the sum of fronts lies in
 // another. They are read as texels: on llvmpipe a gather from a storage block takes three times as long. Starting a sum
 // uses no branches, because a software rasteriser executes both sides of each.
-#include "lpv/common.glsl"
+#include "cascades/block.glsl"
 #include "lpv/stored_units.glsl"
 #include "lpv/bricks.glsl"
 layout(local_size_x = 64) in;
@@ -67,13 +67,13 @@ void main() {
   int inBrick = int(gl_LocalInvocationID.x);
   ivec3 local = kBrick * ivec3(brick - row * ofAxis, row - slice * ofAxis, slice - cascade * ofAxis) +
                 ivec3(inBrick & 3, inBrick >> 2 & 3, inBrick >> 4);
-  int cells = lpv.shape.x, layers = cells * lpv.shape.y;
+  int cells = grids.shape.x, layers = cells * grids.shape.y;
   if (any(greaterThanEqual(local, ivec3(cells)))) return;
   int layer = cells * cells, at = (cascade * cells + local.z) * layer + local.y * cells + local.x,
       channel = layer * layers;
   // The cell's lower faces, indexed by its lower corner in the geometry volume.
   int corners = cells + 1, corner = ((cascade * corners + local.z) * corners + local.y) * corners + local.x;
-  int facesOfAxis = corners * corners * corners * lpv.shape.y;
+  int facesOfAxis = corners * corners * corners * grids.shape.y;
   vec4 sum[3] = vec4[3](vec4(0.0), vec4(0.0), vec4(0.0));
 
   GATHER(x, 1, vec3(1, 0, 0), 1, xyzw, xyzw, corner)

@@ -1,7 +1,7 @@
 // One propagation step of one cascade as published [LPV2015, 5.3]: drawn slice by slice, with six neighbours of five
 // faces each and the blocking potential read at each crossed face's centre. Three targets take the new front, three add
 // to the sum.
-#include "lpv/common.glsl"
+#include "cascades/block.glsl"
 #include "lpv/kernel_faces.glsl"
 flat in int fSlice;
 layout(binding = 0) uniform sampler3D sourceRed;
@@ -21,10 +21,10 @@ uniform int cascade;
 float passes(ivec3 cell, vec3 travel, vec3 towards) {
 #if BLOCKED
   // The crossed face's centre in cells of the geometry volume, whose cell centres are the grid's corners.
-  float corners = float(lpv.shape.x + 1);
+  float corners = float(grids.shape.x + 1);
   vec3 texel = vec3(cell) + 0.5 - 0.5 * travel + 0.5;
   texel.z += float(cascade) * corners;
-  return facePasses(textureLod(geometryVolume, texel / vec3(corners, corners, corners * float(lpv.shape.y)), 0.0),
+  return facePasses(textureLod(geometryVolume, texel / vec3(corners, corners, corners * float(grids.shape.y)), 0.0),
                     towards);
 #else
   return 1.0;
@@ -33,7 +33,7 @@ float passes(ivec3 cell, vec3 travel, vec3 towards) {
 
 void main() {
   ivec3 cell = ivec3(gl_FragCoord.xy, fSlice);
-  int cells = lpv.shape.x;
+  int cells = grids.shape.x;
   int layers = cascade * cells;
   vec4 sum[3] = vec4[3](vec4(0.0), vec4(0.0), vec4(0.0));
   for (int d = 0; d < 6; ++d) {

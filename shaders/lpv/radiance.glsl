@@ -10,17 +10,17 @@ mat3x4 lpvRadiance(vec3 position) {
   const vec4 kBands = vec4(2.0 / 3.0, vec3(0.91461886));
   mat3x4 sum = mat3x4(0.0);
   float left = 1.0;
-  for (int k = 0; k < lpv.shape.y && left > 0.0; ++k) {
+  for (int k = 0; k < grids.shape.y && left > 0.0; ++k) {
 #if SUM_CASCADES
     float weight = 1.0;
 #else
-    float weight = left * lpvCascadeWeight(k, position);
+    float weight = left * cascadeWeight(k, position);
     left -= weight;
     if (weight <= 0.0) continue;
 #endif
     float border;
-    float cells = float(lpv.shape.x);
-    vec3 place = lpvPlace(k, position, vec3(0.0), border) / vec3(cells, cells, cells * float(lpv.shape.y));
+    float cells = float(grids.shape.x);
+    vec3 place = lpvPlace(k, position, vec3(0.0), border) / vec3(cells, cells, cells * float(grids.shape.y));
     sum += weight * border *
            mat3x4(textureLod(lpvRed, place, 0.0), textureLod(lpvGreen, place, 0.0), textureLod(lpvBlue, place, 0.0));
   }

@@ -9,7 +9,7 @@
 // (engine/lpv/README.md). That factor is divided out, so a source of flux S returns at most rho S, and the sum of all
 // bounces stays below S / (1 - rho).
 // bounces stays below S / (1 - rho).
-#include "lpv/common.glsl"
+#include "cascades/block.glsl"
 #include "lpv/kernel.glsl"
 #include "lpv/sums.glsl"
 layout(local_size_x = GROUP_X, local_size_y = GROUP_Y, local_size_z = 1) in;
@@ -59,8 +59,8 @@ float heldBack(vec4 light, FaceValues passes) {
 
 void main() {
   ivec3 cell = ivec3(gl_GlobalInvocationID);
-  int cells = lpv.shape.x;
-  if (any(greaterThanEqual(cell, ivec3(cells, cells, cells * lpv.shape.y)))) return;
+  int cells = grids.shape.x;
+  if (any(greaterThanEqual(cell, ivec3(cells, cells, cells * grids.shape.y)))) return;
   ivec3 corner = ivec3(cell.xy, cell.z / cells * (cells + 1) + cell.z % cells);
   vec4 injected[3] =
       vec4[3](texelFetch(injectedRed, cell, 0), texelFetch(injectedGreen, cell, 0), texelFetch(injectedBlue, cell, 0));

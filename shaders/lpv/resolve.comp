@@ -1,6 +1,6 @@
 // Turns atomic counters into coefficients. FILL_FIXED: converts integers to floats in place, for lights or surfels.
 // FILL_HALF: copies images into the first front. FILL_FLOAT needs no such pass.
-#include "lpv/common.glsl"
+#include "cascades/block.glsl"
 #include "lpv/fixed.glsl"
 layout(local_size_x = GROUP_X, local_size_y = GROUP_Y, local_size_z = 1) in;
 uniform float fixedScale;
@@ -19,14 +19,14 @@ void main() {
   ivec3 cell = ivec3(gl_GlobalInvocationID);
 #if FILL_FIXED
   if (any(greaterThanEqual(cell, size))) return;
-  float inverse = 1.0 / stepsOfCascade(cell.z * lpv.shape.y / size.z, fixedScale);
+  float inverse = 1.0 / stepsOfCascade(cell.z * grids.shape.y / size.z, fixedScale);
   int at = (cell.z * size.y + cell.y) * size.x + cell.x;
   for (int i = 0; i < channels; ++i) {
     int word = at + i * size.x * size.y * size.z;
     counts[word] = floatBitsToUint(vec4(ivec4(counts[word])) * inverse);
   }
 #else
-  int cells = lpv.shape.x, layers = cells * lpv.shape.y;
+  int cells = grids.shape.x, layers = cells * grids.shape.y;
   if (any(greaterThanEqual(cell, ivec3(cells, cells, layers)))) return;
   int at = (cell.z * cells + cell.y) * cells + cell.x, channel = cells * cells * layers;
   front[at] = texelFetch(countRed, cell, 0);

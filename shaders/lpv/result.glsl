@@ -2,7 +2,7 @@
 // textures that the lookup filters. llvmpipe takes forty times as long to store a texel to an image as to store it to a
 // buffer and copy it.
 #include "lpv/storage.glsl"
-#if LPV_FULL_FLOAT
+#if GRID_FULL_FLOAT
 layout(std430, binding = 1) writeonly buffer Result { vec4 texels[]; };
 vec4 asTexel(vec4 value) { return toTexel(value); }
 #else

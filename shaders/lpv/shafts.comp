@@ -37,7 +37,7 @@ vec3 volumeScattered(vec3 position, vec3 towardsEye) {
   vec3 first = kY1 * towardsEye, g = haze.anisotropy;
   vec3 found = vec3(dot(light[0], vec4(kY00, g.r * first)), dot(light[1], vec4(kY00, g.g * first)),
                     dot(light[2], vec4(kY00, g.b * first)));
-  return max(found, 0.0) * lpv.referenceIrradiance;
+  return max(found, 0.0) * grids.referenceIrradiance;
 }
 #endif
 

@@ -7,7 +7,7 @@ struct StackedTexels {
 };
 
 StackedTexels stackedTexels(vec3 texel, int index) {
-  int n = lpv.shape.x;
+  int n = grids.shape.x;
   ivec3 low = clampedInt(floor(texel - 0.5), ivec3(-2), ivec3(n + 1));
   vec3 upper = clamp(texel - 0.5 - vec3(low), 0.0, 1.0);
   StackedTexels result;
@@ -24,6 +24,6 @@ StackedTexels stackedTexels(vec3 texel, int index) {
 
 // Maps a point of a cascade, in its cells, to the next coarser cascade.
 vec3 lpvCoarserTexel(vec3 texel, int cascade) {
-  vec3 position = lpv.cascades[cascade].minimum + texel * lpv.cascades[cascade].cellSize;
-  return (position - lpv.cascades[cascade + 1].minimum) / lpv.cascades[cascade + 1].cellSize;
+  vec3 position = grids.cascades[cascade].minimum + texel * grids.cascades[cascade].cellSize;
+  return (position - grids.cascades[cascade + 1].minimum) / grids.cascades[cascade + 1].cellSize;
 }

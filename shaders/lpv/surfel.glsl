@@ -1,5 +1,5 @@
 // Converts a surfel of a reflective shadow map for the geometry volume; shared by all ways to fill it. Needs
-// lib/sh.glsl, lpv/common.glsl. LOWEST_CELL is 0; 1 with the deviation lpv.first-cell.
+// lib/sh.glsl, cascades/block.glsl. LOWEST_CELL is 0; 1 with the deviation lpv.first-cell.
 #include "lib/clamped_int.glsl"
 #include "lib/finite.glsl"
 
@@ -10,8 +10,8 @@ bool isUsableSurfel(vec4 position, vec3 normal, float area) {
 
 // The surfel's cell of the geometry volume in cascade k.
 bool surfelCorner(int k, vec3 position, out ivec3 corner) {
-  int corners = lpv.shape.x + 1;
-  vec3 cornerPosition = (position - lpv.cascades[k].minimum) / lpv.cascades[k].cellSize + 0.5;
+  int corners = grids.shape.x + 1;
+  vec3 cornerPosition = (position - grids.cascades[k].minimum) / grids.cascades[k].cellSize + 0.5;
 #if !TRUNCATE  // deviation lpv.truncate: positions in (-1, 0) fall into cell 0
   cornerPosition = floor(cornerPosition);
 #endif

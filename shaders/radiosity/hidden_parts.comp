@@ -10,12 +10,12 @@ struct Receiver {
 layout(std430, binding = 1) readonly buffer Receivers { Receiver receivers[]; };
 // part + 1 for a front face, 0 if nothing is hit, ~0 for a back face
 layout(std430, binding = 2) writeonly buffer Seen { uint seen[]; };
-uniform int receiverCount, raysEach;
+uniform int recordCount, raysEach;
 
 void main() {
   int index = int(gl_GlobalInvocationID.x), part = index / raysEach % kPatchParts,
       patchPlace = index / (raysEach * kPatchParts);
-  if (patchPlace >= receiverCount) return;
+  if (patchPlace >= recordCount) return;
   Receiver r = receivers[patchPlace];
   vec2 weights = partCentroid(part);
   vec3 at = r.a.xyz + weights.x * (r.b.xyz - r.a.xyz) + weights.y * (r.c.xyz - r.a.xyz), n = r.normal.xyz;

@@ -5,12 +5,12 @@
 
 // Uniform blocks
 #define BLOCK_FRAME 0
-#define BLOCK_LPV 1
+#define BLOCK_CASCADES 1
 #define BLOCK_HAZE 2
 #define BLOCK_LIGHTS 3
 #define BLOCK_SUN_CASCADES 4
-#define BLOCK_RECEIVER_PATHS 5
-#define BLOCK_RECEIVERS 6
+#define BLOCK_CACHE_PATHS 5
+#define BLOCK_CACHE 6
 
 // Texture units of shading
 #define UNIT_DIFFUSE 0
@@ -19,7 +19,7 @@
 #define UNIT_LPV_RED 4
 #define UNIT_LPV_GREEN 5
 #define UNIT_LPV_BLUE 6
-#define UNIT_RECEIVED 5
+#define UNIT_CACHE 5
 #define UNIT_GATHERED 7
 #define UNIT_LPV_LOBES 8
 #define UNIT_LPV_GEOMETRY 9

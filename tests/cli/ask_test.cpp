@@ -77,16 +77,14 @@ TEST_F(Ask, SharesAddUpToThePixelOfGatheredTexels) {
   expectWhole(kCornell, kSmall + "--technique rsm --set rsm.samples=100 --set rsm.interpolate=off", 12, 40);
 }
 
-TEST_F(Ask, SharesAddUpToThePixelOfPropagatedLight) {
-  expectWhole(kCornell, kSmall + "--technique lpv --set lpv.transport=propagate", 32, 20);
-}
+TEST_F(Ask, SharesAddUpToThePixelOfPropagatedLight) { expectWhole(kCornell, kSmall + "--technique lpv", 32, 20); }
 
-TEST_F(Ask, SharesAddUpToThePixelOfReceivers) {
-  expectWhole(kCornell, kSmall + "--technique lpv --set lpv.transport=rays --set lpv.samples=64", 32, 20);
+TEST_F(Ask, SharesAddUpToThePixelOfCacheRecords) {
+  expectWhole(kCornell, kSmall + "--technique irradiance-cache --set cache.samples=64", 32, 20);
 }
 
 TEST_F(Ask, SharesAddUpToThePixelOfPatches) {
-  expectWhole(kCornell, kSmall + "--technique radiosity --set rad.edge=0.1", 32, 20);
+  expectWhole(kCornell, kSmall + "--technique radiosity --set radiosity.edge=0.1", 32, 20);
 }
 
 // The paths of the answer are those of the picture.

@@ -84,11 +84,11 @@ TEST_F(CommandLine, InfoReportsHostAndScene) {
 TEST_F(CommandLine, RenderWritesEveryFormatWithTheSameMean) {
   for (const char* extension : {"png", "hdr", "exr", "pfm"}) {
     const std::string out = path(std::string("picture.") + extension);
-    const RunResult result = RUN_LUCERNA("render " + scene() + " --size 48x32 --set lpv.cells=8 -o " + out +
+    const RunResult result = RUN_LUCERNA("render " + scene() + " --size 48x32 --set cache.cells=8 -o " + out +
                                          " --json " + path("render.json"));
     ASSERT_EQ(result.exitCode, 0) << result.err;
     const auto render = json("render.json");
-    EXPECT_EQ(render.at("technique"), "lpv");
+    EXPECT_EQ(render.at("technique"), "irradiance-cache");
     EXPECT_EQ(render.at("fidelity"), "corrected");
     EXPECT_TRUE(render.at("deviations").is_array());
     EXPECT_GT(render.at("seconds"), 0.0);
@@ -108,8 +108,8 @@ TEST_F(CommandLine, ComponentsAddUp) {
   const char* names[] = {"all", "direct", "indirect"};
   for (int i = 0; i < 3; ++i) {
     const RunResult result =
-        RUN_LUCERNA("render " + scene() + " --size 48x32 --set lpv.transport=propagate --set lpv.cells=8 --component " +
-                    names[i] + " -o " + path("x.pfm"));
+        RUN_LUCERNA("render " + scene() + " --size 48x32 --technique lpv --set lpv.cells=8 --component " + names[i] +
+                    " -o " + path("x.pfm"));
     ASSERT_EQ(result.exitCode, 0) << result.err;
     means[i] = lucerna::meanOf(lucerna::readImage(path("x.pfm")));
   }
@@ -170,7 +170,7 @@ TEST_F(CommandLine, DeviationsAreReported) {
 
 TEST_F(CommandLine, WalkWritesPicturesAndStageTimes) {
   const RunResult result = RUN_LUCERNA("walk " + scene() + " --keys " + path("path.txt") +
-                                       " --set lpv.transport=propagate --set frame.reuse=off --record " + path("out") +
+                                       " --technique lpv --set frame.reuse=off --record " + path("out") +
                                        " --frames 3 --size 64x36 --json " + path("walk.json"));
   ASSERT_EQ(result.exitCode, 0) << result.err;
   EXPECT_EQ(std::distance(fs::directory_iterator(path("out")), fs::directory_iterator()), 3);
@@ -195,7 +195,7 @@ TEST_F(CommandLine, WalkPathTracesEachPictureToItsEnd) {
   EXPECT_EQ(walk.at("technique"), "path");
   for (const char* stage : {"path tracing", "film", "tone mapping"})
     EXPECT_EQ(walk.at("stages").at(stage).at("count"), 2) << stage;
-  for (const char* stage : {"shadow", "shading", "receivers"}) EXPECT_FALSE(walk.at("stages").contains(stage)) << stage;
+  for (const char* stage : {"shadow", "shading", "irradiance cache"}) EXPECT_FALSE(walk.at("stages").contains(stage)) << stage;
 }
 
 TEST_F(CommandLine, DirectLightLeavesTheIndirectStagesOut) {
@@ -239,48 +239,54 @@ TEST_F(CommandLine, RsmReportsWhatInterpolationSaved) {
   EXPECT_NE(std::find(left.begin(), left.end(), "rsm gather"), left.end());
 }
 
-TEST_F(CommandLine, HowLightIsTransportedAndLookedUpIsChosenByName) {
-  const std::string common = "render " + scene() + " --size 32x24 --set lpv.cells=8 --component indirect --json " +
-                             path("lpv.json") + " -o " + path("x.pfm");
+TEST_F(CommandLine, ASettingOfOneTechniqueChoosesIt) {
+  const std::string common =
+      "render " + scene() + " --size 32x24 --component indirect --json " + path("x.json") + " -o " + path("x.pfm");
   const auto mean = [&](const std::string& arguments) {
     const RunResult result = RUN_LUCERNA(common + arguments);
     EXPECT_EQ(result.exitCode, 0) << result.err;
     return lucerna::meanOf(lucerna::readImage(path("x.pfm"))).x;
   };
-  const double usual = mean(" --set lpv.transport=propagate"),
-               flux = mean(" --set lpv.lookup=flux --set lpv.transport=propagate --set lpv.lookup-offset=0");
+  const double usual = mean(" --technique lpv --set lpv.cells=8"),
+               flux = mean(" --technique lpv --set lpv.cells=8 --set lpv.lookup=flux --set lpv.lookup-offset=0");
   EXPECT_EQ(usual, flux);
-  EXPECT_EQ(mean(" --set lpv.iterations=8"), flux);  // a setting of one transport alone chooses it
-  EXPECT_FALSE(json("lpv.json").contains("lpv"));
-  EXPECT_EQ(mean(""), mean(" --set lpv.transport=rays --set lpv.bounces=all"));
-  EXPECT_TRUE(json("lpv.json").contains("lpv"));
-  EXPECT_EQ(mean(" --set lpv.bounce-cells=16"), mean(" --set lpv.transport=gather"));
-  EXPECT_GT(mean(" --set lpv.lookup=published"), 1.2 * flux);
-  EXPECT_EQ(mean(" --set lpv.lookup=published"), mean(" --set lpv.lookup=published --set lpv.lookup-offset=0.5"));
+  EXPECT_EQ(mean(" --set lpv.cells=8"), flux);
+  EXPECT_EQ(json("x.json").at("technique"), "lpv");
+  EXPECT_FALSE(json("x.json").contains("cache"));
+  EXPECT_EQ(mean(" --set cache.cells=8"),
+            mean(" --technique irradiance-cache --set cache.cells=8 --set cache.bounces=all"));
+  EXPECT_TRUE(json("x.json").contains("cache"));
+  mean(" --set texture.mipmaps=on");  // read by several techniques
+  EXPECT_EQ(json("x.json").at("technique"), "irradiance-cache");
+  EXPECT_EQ(mean(" --set cache.cells=8 --set cache.bounce-cells=16"),
+            mean(" --set cache.cells=8 --set cache.transport=gather"));
+  const std::string published = " --set lpv.cells=8 --set lpv.lookup=published";
+  EXPECT_GT(mean(published), 1.2 * flux);
+  EXPECT_EQ(mean(published), mean(published + " --set lpv.lookup-offset=0.5"));
+  EXPECT_EQ(mean(" --deviation path.schlick=on --spp 1") > 0.0, true);
+  EXPECT_EQ(json("x.json").at("technique"), "path");
   for (const char* bounces : {"1", "all"}) {
     const RunResult result = RUN_LUCERNA(
-        common + " --set lpv.transport=rays --set lpv.samples=32 --set lpv.rays=8 --set lpv.bounces=" + bounces);
+        common + " --set cache.cells=8 --set cache.samples=32 --set cache.rays=8 --set cache.bounces=" + bounces);
     ASSERT_EQ(result.exitCode, 0) << result.err;
-    EXPECT_NE(result.out.find("receivers, 32 paths each"), std::string::npos) << result.out;
-    const auto report = json("lpv.json");
-    EXPECT_GT(report.at("lpv").at("receivers"), 10);
-    EXPECT_EQ(report.at("lpv").at("waiting"), 0);
-    EXPECT_EQ(report.at("lpv").at("without_room"), 0);
-    EXPECT_EQ(report.at("lpv").at("paths_of_each"), 32);
+    EXPECT_NE(result.out.find("records, 32 paths each"), std::string::npos) << result.out;
+    const auto report = json("x.json");
+    EXPECT_GT(report.at("cache").at("records"), 10);
+    EXPECT_EQ(report.at("cache").at("waiting"), 0);
+    EXPECT_EQ(report.at("cache").at("without_room"), 0);
+    EXPECT_EQ(report.at("cache").at("paths_of_each"), 32);
     const auto& left = report.at("left_out");
     EXPECT_NE(std::find(left.begin(), left.end(), "reflective shadow map"), left.end());
   }
   const std::string end = " -o " + path("y.pfm"), begin = "render " + scene() + " --size 32x24 ";
-  expectRefused(begin + "--set lpv.transport=rain" + end, 2, {"lpv.transport", "rain", "propagate", "rays"}, "y.pfm");
+  expectRefused(begin + "--set cache.transport=rain" + end, 2, {"cache.transport", "rain", "gather", "rays"}, "y.pfm");
   expectRefused(begin + "--set lpv.lookup=none" + end, 2, {"lpv.lookup", "none", "flux", "published"}, "y.pfm");
   for (const char* rays : {"3", "0", "128", "-1", "many"})
-    expectRefused(begin + "--set lpv.transport=rays --set lpv.rays=" + rays + end, 2, {"lpv.rays", rays}, "y.pfm");
+    expectRefused(begin + "--set cache.rays=" + rays + end, 2, {"cache.rays", rays}, "y.pfm");
   for (const char* samples : {"0", "nan"})
-    expectRefused(begin + "--set lpv.transport=rays --set lpv.samples=" + samples + end, 2, {"lpv.samples", samples},
-                  "y.pfm");
-  expectRefused(begin + "--set lpv.transport=propagate --set lpv.bounces=all" + end, 2,
-                {"lpv.bounces=all", "lpv.transport=propagate"}, "y.pfm");
-  expectRefused(begin + "--set lpv.bounces=0 --set lpv.transport=rays" + end, 2, {"lpv.bounces", "0"}, "y.pfm");
+    expectRefused(begin + "--set cache.samples=" + samples + end, 2, {"cache.samples", samples}, "y.pfm");
+  expectRefused(begin + "--set lpv.bounces=all" + end, 2, {"lpv.bounces", "all", "1 to 64"}, "y.pfm");
+  expectRefused(begin + "--set cache.bounces=0" + end, 2, {"cache.bounces", "0"}, "y.pfm");
   expectRefused(begin + "--set frame.reuse=maybe" + end, 2, {"frame.reuse", "maybe"}, "y.pfm");
 }
 
@@ -358,13 +364,13 @@ TEST_F(CommandLine, ATextureThatIsNoImageIsOneWarning) {
       "scene.mtl",
       "newmtl white\nKd 0.8 0.8 0.8\nmap_Kd broken.png\nnewmtl red\nKd 0.7 0.1 0.1\nmap_Kd textures\\\\missing.png\n");
   write("broken.png", "this is no picture");
-  const RunResult result = RUN_LUCERNA("render " + scene() + " --size 32x32 --set lpv.cells=8 -o " + path("x.png"));
+  const RunResult result = RUN_LUCERNA("render " + scene() + " --size 32x32 --set cache.cells=8 -o " + path("x.png"));
   EXPECT_EQ(result.exitCode, 0) << result.err;
   EXPECT_TRUE(fs::exists(path("x.png")));
   EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 2) << result.err;
   EXPECT_NE(result.err.find("broken.png"), std::string::npos) << result.err;
   EXPECT_NE(result.err.find("missing.png"), std::string::npos) << result.err;
-  EXPECT_EQ(RUN_LUCERNA("render " + scene() + " --quiet --size 32x32 --set lpv.cells=8 -o " + path("x.png")).err, "");
+  EXPECT_EQ(RUN_LUCERNA("render " + scene() + " --quiet --size 32x32 --set cache.cells=8 -o " + path("x.png")).err, "");
 }
 
 TEST_F(CommandLine, AnOldDriverIsAMissingCapability) {

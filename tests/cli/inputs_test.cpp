@@ -99,24 +99,10 @@ TEST_F(Inputs, SettingsThatATechniqueDoesNotReadAreOneWarning) {
   EXPECT_NE(RUN_LUCERNA(render("--technique direct --set rsm.size=8")).err.find("rsm.size: technique direct"),
             std::string::npos);
   for (const char* read :
-       {"lpv --set lpv.transport=gather --set lpv.cells=8 --set rsm.size=8",
+       {"irradiance-cache --set cache.transport=gather --set cache.cells=8 --set rsm.size=8",
         "direct --set shadow.size=64 --set exposure=2", "rsm --set rsm.samples=9 --set texture.anisotropy=1"})
     EXPECT_EQ(RUN_LUCERNA(render(std::string("--technique ") + read)).err.find("does not use"), std::string::npos)
         << read;
-}
-
-TEST_F(Inputs, FormerSpellingsWorkAndSayTheNewOne) {
-  const auto warned = [&](const std::string& options, const std::string& line) {
-    const RunResult result = RUN_LUCERNA(render(options));
-    EXPECT_EQ(result.exitCode, 0) << result.err;
-    EXPECT_NE(result.err.find(line), std::string::npos) << result.err;
-    EXPECT_EQ(result.err.find("does not use"), std::string::npos) << result.err;
-  };
-  warned("--technique radiosity --set rad.edge=1 --set radiosity.resolution=16",
-         "--set rad.edge: now written radiosity.edge");
-  warned("--technique radiosity --set radiosity.edge=1 --set radiosity.resolution=16 --deviation rad.centroid=on",
-         "--deviation rad.centroid: now written radiosity.centroid");
-  warned("--technique rsm --set rsm.samples=9 --set rsm.near=disc", "--set rsm.near: now written rsm.near-field");
 }
 
 TEST_F(Inputs, ASolutionOfOtherSettingsIsSaidSo) {

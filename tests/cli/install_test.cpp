@@ -108,7 +108,7 @@ TEST_F(Installed, ConsumerDrawsWhatTheProgramDraws) {
   EXPECT_TRUE(fs::exists(path("consumer.pfm")));
 
   const RunResult program = runWithoutSources("moved/bin/lucerna render " + scene +
-                                              " --technique lpv --set lpv.transport=propagate --set lpv.cells=16 "
+                                              " --technique lpv --set lpv.cells=16 "
                                               "--size 96x64 --quiet -o program.pfm --json program.json");
   ASSERT_EQ(program.exitCode, 0) << program.err;
   const auto mean = nlohmann::json::parse(std::ifstream(path("program.json"))).at("mean").get<std::vector<double>>();

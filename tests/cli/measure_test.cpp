@@ -135,7 +135,7 @@ TEST_F(Measure, BenchErrorReportsAndGoesOnWhereItWas) {
   EXPECT_GE(ofPath["corrected"], 3);
   EXPECT_GE(ofPath["original"], 3);
   EXPECT_EQ(report.at("references").size(),
-            6u);  // light that paths to receivers are given and that propagation is given are two
+            6u);  // the light given to paths and that given to propagation are two
   EXPECT_EQ(report.at("model").size(), 5u);
   // What techniques must beat stands beside them: nothing scattered has 100 %, by pixels and in blocks, of all light
   // and inside each model.
@@ -209,18 +209,18 @@ TEST_F(Measure, PicturesThatAreAskedForAndFloors) {
   for (const auto& row : report.at("rows")) rows[row.at("label")] = row;
   EXPECT_EQ(rows.size(), 7u);
   ASSERT_TRUE(rows.contains("rsm samples=20 rsm.interpolate=off") || rows.contains("rsm samples=20 interpolate=off"));
-  for (const char* of : {"lpv transport=propagate", "lpv transport=gather bounces=1"}) {
+  for (const char* of : {"lpv", "irradiance-cache transport=gather bounces=1"}) {
     const std::string floor = std::string(of) + ", floor: the map at each pixel";
     ASSERT_TRUE(rows.contains(of) && rows.contains(floor)) << of;
     const auto inside = [&](const std::string& label) { return rows.at(label).at("inside_model"); };
     EXPECT_EQ(inside(of).at("model"), inside(floor).at("model"));
     // Gathering at each pixel is far better than propagation. Here it is as good as gathering in cells, since a plain
     // wall needs no finer ones. All light is the technique's direct light plus what is measured.
-    const double most = std::string_view(of).ends_with("propagate") ? 0.2 : 1.25;
+    const double most = std::string_view(of) == "lpv" ? 0.2 : 1.25;
     EXPECT_LT(inside(floor).at("l2").get<double>(), most * inside(of).at("l2").get<double>()) << of;
     EXPECT_LT(rows.at(floor).at("l2").get<double>(), 0.5) << of;
   }
-  EXPECT_TRUE(rows.contains("lpv transport=propagate, floor: exact radiance in the cells"));
+  EXPECT_TRUE(rows.contains("lpv, floor: exact radiance in the cells"));
   EXPECT_NE(report.at("command").get<std::string>().find("--floors --rung"), std::string::npos);
   expectOneLine(RUN_LUCERNA(bench + "--rung 'smoke a=1'"), 2, {"--rung", "smoke", "rsm"});
   expectOneLine(RUN_LUCERNA(bench + "--rung 'rsm rsm.samplez=1'"), 2, {"rsm.samplez"});

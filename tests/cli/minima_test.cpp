@@ -43,7 +43,7 @@ class Minima : public ::testing::Test {
 TEST_F(Minima, WhatFitsIsRendered) {
   expectRendered("--technique direct");
   expectRendered("--technique rsm");
-  expectRendered("--technique lpv --set lpv.transport=propagate --set lpv.cells=16");
+  expectRendered("--technique lpv --set lpv.cells=16");
   expectRendered("--technique path --spp 1");
   // A number for each pixel is more than a storage block holds.
   if (lucerna::test::longTests()) expectRendered("--technique rsm --set rsm.samples=4 --set rsm.size=64", "2176x2048");

@@ -80,16 +80,16 @@ INSTANTIATE_TEST_SUITE_P(
                                 "assets/cornell/cornell.json --technique rsm --set rsm.size=64 "
                                 "--set rsm.samples=32 --set rsm.interpolate=off"),
                       std::pair("LpvRays",
-                                "assets/cornell/cornell.json --set lpv.transport=rays --set lpv.cells=8 "
-                                "--set lpv.samples=16"),
-                      std::pair("LpvGather",
-                                "assets/cornell/cornell.json --set lpv.transport=gather --set lpv.cells=8 "
+                                "assets/cornell/cornell.json --technique irradiance-cache --set cache.cells=8 "
+                                "--set cache.samples=16"),
+                      std::pair("CacheGather",
+                                "assets/cornell/cornell.json --set cache.transport=gather --set cache.cells=8 "
                                 "--set rsm.size=32"),
                       std::pair("LpvPropagate",
-                                "assets/cornell/cornell.json --set lpv.transport=propagate --set lpv.cells=8 "
+                                "assets/cornell/cornell.json --technique lpv --set lpv.cells=8 "
                                 "--set rsm.size=64 --set lpv.bounces=2"),
                       std::pair("LpvFixedPoint",
-                                "assets/cornell/cornell.json --set lpv.transport=propagate --set lpv.cells=8 "
+                                "assets/cornell/cornell.json --technique lpv --set lpv.cells=8 "
                                 "--set rsm.size=64 --set lpv.fill=fixed"),
                       std::pair("RadiosityItemBuffer",
                                 "assets/cornell/cornell.json --technique radiosity "

@@ -70,9 +70,9 @@ std::string small(const std::string& command) {
     if (has("--technique path")) more += " --spp 1";
     if (has("--technique radiosity"))
       more += " --set radiosity.resolution=16 --set radiosity.error=0.1 --set radiosity.edge=0.2";
-    else if (!has("--technique") && !has("lpv.transport=rays")) more += " --set lpv.cells=8";
+    else if (has("lpv.")) more += " --set lpv.cells=8";
   }
-  if (is("walk")) more = " --record walk --frames 2 --size 32x18 --set lpv.cells=8 --quiet";
+  if (is("walk")) more = " --record walk --frames 2 --size 32x18 --set cache.cells=8 --quiet";
   if (is("bench all")) more = " --parts tables,pictures --scale 0.02 --quiet";
   if (is("bench tables"))
     more = has("lpv") ? " --scale 0.04 --quiet" : has("vpt") ? " --scale 0.001 --quiet" : " --scale 0.0005 --quiet";

@@ -274,7 +274,7 @@ TEST_F(FolderParts, FramesOfAWalk) {
     expectWrongJoinsRefused(command, command + " --views 0:30");
   }
   const std::string box = "walk '" LUCERNA_SOURCE_DIR "/assets/cornell/cornell.json' --size 32x18 --frames 4 ";
-  expectRefused(box + "--technique lpv --set lpv.transport=rays" + partOf(0, 2, "no"), "lpv.transport=rays");
+  expectRefused(box + "--technique irradiance-cache" + partOf(0, 2, "no"), "irradiance-cache");
   expectRefused(box + "--flicker" + partOf(0, 2, "no"), "--flicker");
 }
 

@@ -51,8 +51,8 @@ class Window : public ::testing::Test {
                  const std::string& size = "128x72") const {
     return run("cd '" + folder_.path().string() + "' && " + before + " LUCERNA_VERBOSE=1 LUCERNA_REFERENCES=" +
                path("references") + " '" LUCERNA_BINARY "' walk room.json --keys path.txt --size " + size +
-               " --set lpv.cells=8 --set lpv.samples=64 --set rad.edge=1 --play-input '" + input +
-               "' --json walk.json " + arguments);
+               " --set lpv.cells=8 --set cache.cells=8 --set cache.samples=64 --set radiosity.edge=1 --play-input '" +
+               input + "' --json walk.json " + arguments);
   }
   static std::string kept(const std::string& name) { return LUCERNA_SOURCE_DIR "/tests/input/" + name; }
   nlohmann::json json() const { return nlohmann::json::parse(std::ifstream(path("walk.json"))); }
@@ -206,8 +206,7 @@ TEST_F(Window, DebugViewsOfTheSceneItself) {
       "15 touch Debug view/cascade\n15 touch Debug view/at most\n16 touch Debug view/in the scene\n"
       "17 touch Debug view/in the scene: geometry volume\n18 save geometry.png\n";
   write("input.txt", first + (isLong ? visits : "") + lobes + (isLong ? geometry : ""));
-  const RunResult result =
-      play(path("input.txt"), "--technique lpv --set lpv.transport=propagate --set lpv.blocking=on", "", "700x400");
+  const RunResult result = play(path("input.txt"), "--technique lpv --set lpv.blocking=rsm", "", "700x400");
   ASSERT_EQ(result.exitCode, 0) << result.err;
   EXPECT_EQ(glComplaints(result.err), "");
   const auto pixels = [&](const char* name) {  // of the picture, beside the panel and above the hint
@@ -228,21 +227,21 @@ TEST_F(Window, DebugViewsOfTheSceneItself) {
 }
 
 // Disks where light is kept, while the picture below them stays as it is.
-TEST_F(Window, ReceiversAreDrawnInTheScene) {
+TEST_F(Window, CacheRecordsAreDrawnInTheScene) {
   write("input.txt",
         "1 key R\n2 touch Debug view\n12 save frame.png\n13 touch Debug view/in the scene\n14 touch Debug view/in the "
-        "scene: receivers\n15 save receivers.png\n");
-  const RunResult result = play(path("input.txt"), "--technique lpv --set lpv.transport=rays", "", "700x400");
+        "scene: cache records\n15 save records.png\n");
+  const RunResult result = play(path("input.txt"), "--technique irradiance-cache", "", "700x400");
   ASSERT_EQ(result.exitCode, 0) << result.err;
   EXPECT_EQ(glComplaints(result.err), "");
   const lucerna::Bitmap frame = lucerna::readBitmap(path("frame.png")),
-                        receivers = lucerna::readBitmap(path("receivers.png"));
+                        records = lucerna::readBitmap(path("records.png"));
   int changed = 0, count = 0;
   for (int y = 0; y < 300; ++y)
     for (int x = 0; x < 380; ++x, ++count) {
       const auto at =
           4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(frame.width) + static_cast<std::size_t>(x));
-      changed += std::abs(frame.rgba[at] - receivers.rgba[at]) > 16;
+      changed += std::abs(frame.rgba[at] - records.rgba[at]) > 16;
     }
   EXPECT_GT(changed, count / 100);
   EXPECT_LT(changed, count / 2);
@@ -354,7 +353,7 @@ TEST_F(Window, TruthComesWhileTheCameraRests) {
 // own clock says: 0.1, but for what was begun last and is paid back later.
 TEST_F(Window, TruthTakesItsShareOfFramesAlone) {
   write("input.txt", "1 key R\n2 key T\n200 key F2\n");
-  const RunResult result = play(path("input.txt"), "--technique lpv --set lpv.transport=rays --set lpv.samples=65536");
+  const RunResult result = play(path("input.txt"), "--technique irradiance-cache --set cache.samples=65536");
   ASSERT_EQ(result.exitCode, 0) << result.err;
   const auto truth = json().at("window").at("truth");
   const double spent = truth.at("seconds_in_frames"), frames = truth.at("seconds_of_frames"),

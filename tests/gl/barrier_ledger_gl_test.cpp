@@ -122,13 +122,14 @@ TEST_F(BarrierLedgerOnGl, EachBarrierOfTheEngineIsMissed) {
   RenderSettings base;
   base.size = {32, 24};
   base.shadow.size = base.rsm.size = base.lights.pointSize = 32;
-  base.lpv.cascades.cells = 8;
-  base.lpv.cascades.cascades = 3;
-  base.lpv.samples = 64;
+  base.lpv.cascades.cells = base.cache.cascades.cells = 8;
+  base.lpv.cascades.cascades = base.cache.cascades.cascades = 3;
+  base.cache.samples = 64;
+  base.cache.bounces = 1;
   base.gather.samples = 16;
   struct Case {
     Technique technique;
-    LpvTransport transport = LpvTransport::propagate;
+    CacheTransport transport = CacheTransport::rays;
     int lowResolution = 4;
     bool haze = false;
   };
@@ -139,7 +140,7 @@ TEST_F(BarrierLedgerOnGl, EachBarrierOfTheEngineIsMissed) {
   const auto frames = [&](const Case& c) {
     RenderSettings settings = base;
     settings.technique = c.technique;
-    settings.lpv.transport = c.transport;
+    settings.cache.transport = c.transport;
     settings.gather.lowResolution = c.lowResolution;
     settings.lpv.shafts = c.haze;
     settings.lpv.blocking = !c.haze;  // merged views issue the barrier of the shafts' next frame too
@@ -153,10 +154,9 @@ TEST_F(BarrierLedgerOnGl, EachBarrierOfTheEngineIsMissed) {
     renderer.readRadiance();
   };
   gl::BarrierLedger& ledger = *gl::barrierLedger();
-  for (const Case& c :
-       {Case{Technique::rsm}, Case{Technique::rsm, {}, 0}, Case{Technique::lpv},
-        Case{Technique::lpv, LpvTransport::gather}, Case{Technique::lpv, LpvTransport::rays},
-        Case{Technique::lpv, LpvTransport::propagate, 4, true}, Case{Technique::path}, Case{Technique::radiosity}}) {
+  for (const Case& c : {Case{Technique::rsm}, Case{Technique::rsm, {}, 0}, Case{Technique::lpv},
+                        Case{Technique::irradianceCache, CacheTransport::gather}, Case{Technique::irradianceCache},
+                        Case{Technique::lpv, {}, 4, true}, Case{Technique::path}, Case{Technique::radiosity}}) {
     const auto before = ledger.barriers();
     frames(c);
     ASSERT_EQ(context().takeErrors(), std::vector<std::string>{});

@@ -10,8 +10,8 @@
 #include "gl/time_query.hpp"
 #include "lpv/light_propagation_volume.hpp"
 #include "shared/frame.h"
-#include "shared/lpv.h"
-#include "shared/lpv_receivers.h"
+#include "shared/cascades.h"
+#include "shared/irradiance_cache.h"
 
 #include <algorithm>
 #include <array>
@@ -946,44 +946,43 @@ TEST_F(GlSharedStructs, FrameBlock) {
   EXPECT_EQ(sizeOf(program, "FrameBlock"), static_cast<GLint>(sizeof(FrameConstants)));
 }
 
-TEST_F(GlSharedStructs, LpvBlock) {
-  using shared::LpvCascade;
-  using shared::LpvConstants;
+TEST_F(GlSharedStructs, CascadeBlock) {
+  using shared::CascadeConstants;
+  using shared::CascadeGrid;
   const Program& program =
       programs().loadCompute("probe", "lpv/probe.comp", lucerna::LightPropagationVolume::lookupFlags({}));
   const auto inCascade = [](std::size_t k, std::size_t member) {
-    return static_cast<GLint>(offsetof(LpvConstants, cascades) + k * sizeof(LpvCascade) + member);
+    return static_cast<GLint>(offsetof(CascadeConstants, cascades) + k * sizeof(CascadeGrid) + member);
   };
-  for (std::size_t k = 0; k < LPV_MAX_CASCADES; ++k) {
-    const auto name = [&](const char* member) { return "lpv.cascades[" + std::to_string(k) + "]." + member; };
-    EXPECT_EQ(offsetOf(program, name("minimum").c_str()), inCascade(k, offsetof(LpvCascade, minimum)));
-    EXPECT_EQ(offsetOf(program, name("cellSize").c_str()), inCascade(k, offsetof(LpvCascade, cellSize)));
-    EXPECT_EQ(offsetOf(program, name("blendCentre").c_str()), inCascade(k, offsetof(LpvCascade, blendCentre)));
-    EXPECT_EQ(offsetOf(program, name("blendHalf").c_str()), inCascade(k, offsetof(LpvCascade, blendHalf)));
+  for (std::size_t k = 0; k < MAX_CASCADES; ++k) {
+    const auto name = [&](const char* member) { return "grids.cascades[" + std::to_string(k) + "]." + member; };
+    EXPECT_EQ(offsetOf(program, name("minimum").c_str()), inCascade(k, offsetof(CascadeGrid, minimum)));
+    EXPECT_EQ(offsetOf(program, name("cellSize").c_str()), inCascade(k, offsetof(CascadeGrid, cellSize)));
+    EXPECT_EQ(offsetOf(program, name("blendCentre").c_str()), inCascade(k, offsetof(CascadeGrid, blendCentre)));
+    EXPECT_EQ(offsetOf(program, name("blendHalf").c_str()), inCascade(k, offsetof(CascadeGrid, blendHalf)));
   }
-  EXPECT_EQ(offsetOf(program, "lpv.shape"), static_cast<GLint>(offsetof(LpvConstants, shape)));
-  EXPECT_EQ(offsetOf(program, "lpv.referenceIrradiance"),
-            static_cast<GLint>(offsetof(LpvConstants, referenceIrradiance)));
-  EXPECT_EQ(offsetOf(program, "lpv.blendBand"), static_cast<GLint>(offsetof(LpvConstants, blendBand)));
-  EXPECT_EQ(offsetOf(program, "lpv.lookupOffset"), static_cast<GLint>(offsetof(LpvConstants, lookupOffset)));
-  EXPECT_EQ(sizeOf(program, "LpvBlock"), static_cast<GLint>(sizeof(LpvConstants)));
+  EXPECT_EQ(offsetOf(program, "grids.shape"), static_cast<GLint>(offsetof(CascadeConstants, shape)));
+  EXPECT_EQ(offsetOf(program, "grids.referenceIrradiance"),
+            static_cast<GLint>(offsetof(CascadeConstants, referenceIrradiance)));
+  EXPECT_EQ(offsetOf(program, "grids.blendBand"), static_cast<GLint>(offsetof(CascadeConstants, blendBand)));
+  EXPECT_EQ(offsetOf(program, "grids.lookupOffset"), static_cast<GLint>(offsetof(CascadeConstants, lookupOffset)));
+  EXPECT_EQ(sizeOf(program, "CascadeBlock"), static_cast<GLint>(sizeof(CascadeConstants)));
 }
 
-TEST_F(GlSharedStructs, ReceiverBlockAndBuffer) {
-  using shared::LpvReceiver;
-  using shared::LpvReceiverConstants;
-  const Program& program = programs().loadCompute("keep", "lpv/receivers/keep.comp", {{"LPV_FULL_FLOAT", 0}});
-#define EXPECT_OFFSET(member)                                                                                    \
-  EXPECT_EQ(offsetOf(program, "receiving." #member), static_cast<GLint>(offsetof(LpvReceiverConstants, member))) \
-      << #member
-  EXPECT_EQ(offsetOf(program, "receiving.firstCell[0]"), static_cast<GLint>(offsetof(LpvReceiverConstants, firstCell)));
+TEST_F(GlSharedStructs, CacheBlockAndBuffer) {
+  using shared::CacheConstants;
+  using shared::CacheRecord;
+  const Program& program = programs().loadCompute("keep", "irradiance_cache/keep.comp", {{"GRID_FULL_FLOAT", 0}});
+#define EXPECT_OFFSET(member) \
+  EXPECT_EQ(offsetOf(program, "cache." #member), static_cast<GLint>(offsetof(CacheConstants, member))) << #member
+  EXPECT_EQ(offsetOf(program, "cache.firstCell[0]"), static_cast<GLint>(offsetof(CacheConstants, firstCell)));
   EXPECT_OFFSET(rayOrigin);
   EXPECT_OFFSET(frame);
   EXPECT_OFFSET(capacity);
   EXPECT_OFFSET(mostSegments);
   EXPECT_OFFSET(markEvery);
 #undef EXPECT_OFFSET
-  EXPECT_EQ(sizeOf(program, "LpvReceiverBlock"), static_cast<GLint>(sizeof(LpvReceiverConstants)));
+  EXPECT_EQ(sizeOf(program, "CacheBlock"), static_cast<GLint>(sizeof(CacheConstants)));
   const auto property = [&](const char* name, GLenum which) {
     const GLuint index = glGetProgramResourceIndex(program.id(), GL_BUFFER_VARIABLE, name);
     GLint value = -1;
@@ -992,7 +991,7 @@ TEST_F(GlSharedStructs, ReceiverBlockAndBuffer) {
     return value;
   };
 #define EXPECT_OFFSET(member) \
-  EXPECT_EQ(property("before[0]." #member, GL_OFFSET), static_cast<GLint>(offsetof(LpvReceiver, member))) << #member
+  EXPECT_EQ(property("before[0]." #member, GL_OFFSET), static_cast<GLint>(offsetof(CacheRecord, member))) << #member
   EXPECT_OFFSET(cell);
   EXPECT_OFFSET(triangle);
   EXPECT_OFFSET(state);
@@ -1003,9 +1002,9 @@ TEST_F(GlSharedStructs, ReceiverBlockAndBuffer) {
   EXPECT_OFFSET(born);
   EXPECT_OFFSET(pixel);
   EXPECT_OFFSET(shown);
-  EXPECT_OFFSET(presence);
+  EXPECT_OFFSET(blendWeight);
 #undef EXPECT_OFFSET
-  EXPECT_EQ(property("before[0].cell", GL_TOP_LEVEL_ARRAY_STRIDE), static_cast<GLint>(sizeof(LpvReceiver)));
+  EXPECT_EQ(property("before[0].cell", GL_TOP_LEVEL_ARRAY_STRIDE), static_cast<GLint>(sizeof(CacheRecord)));
 }
 
 }  // namespace

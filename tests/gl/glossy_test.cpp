@@ -1,7 +1,8 @@
 // Glossy reflection of the light propagation volume on GL: its lobes against another quadrature, the shader against a
 // double-precision twin and closed forms, and pictures against the path tracer.
-#include "lpv/cascades.hpp"
+#include "cascades/cascades.hpp"
 #include "lpv/glossy_lobes.hpp"
+#include "shared/lpv.h"
 #include "pathtracer/path_tracer.hpp"
 #include "render/renderer.hpp"
 #include "shared/bindings.h"
@@ -125,7 +126,7 @@ glm::dvec3 reflectedByTwin(const SmallVolume& volume, const GlossyProbe& probe) 
 class GlossyTest : public test::SharedProgramsTest {
  protected:
   static std::vector<glm::dvec3> reflected(const SmallVolume& volume, const std::vector<GlossyProbe>& probes) {
-    shared::LpvConstants constants{};
+    shared::CascadeConstants constants{};
     constants.cascades[0].cellSize = static_cast<float>(volume.cellSize);
     constants.cascades[0].blendHalf = 1e30f;
     constants.shape = {volume.cells, 1, volume.steps, 0};
@@ -151,7 +152,7 @@ class GlossyTest : public test::SharedProgramsTest {
     {
       const gl::ComputePass pass("glossy probe");
       program.use();
-      block.bindUniform(BLOCK_LPV);
+      block.bindUniform(BLOCK_CASCADES);
       for (GLuint c = 0; c < 3; ++c) textures[c].bind(UNIT_LPV_RED + c);
       lobes.bind();
       geometry.bind(UNIT_LPV_GEOMETRY);
@@ -352,7 +353,6 @@ RenderSettings glossySettings() {
   settings.component = Component::indirect;
   settings.size = kGlossySize;
   settings.fullFloatTarget = true;
-  settings.lpv.transport = LpvTransport::propagate;
   settings.lpv.glossy = true;
   settings.shadow.size = 512;
   return settings;

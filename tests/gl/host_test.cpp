@@ -58,7 +58,7 @@ class HostPictures : public ::testing::Test {
   Image picture(const std::string& host, const std::string& prefix = {}) {
     const std::string file = (folder_ / (host + ".pfm")).string();
     const RunResult result = test::run(prefix + "'" LUCERNA_BINARY "' render '" + (folder_ / "room.json").string() +
-                                       "' --host " + host + " -o '" + file + "' --size 64x64 --set lpv.cells=16");
+                                       "' --host " + host + " -o '" + file + "' --size 64x64 --set cache.cells=16");
     if (result.exitCode == 3) {
       std::cout << "[ skipped  ] host " << host << ": " << result.err;
       return {};

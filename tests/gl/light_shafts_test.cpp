@@ -1,5 +1,5 @@
 // Light shafts on GL: against closed forms, and against the path tracer in the same medium.
-#include "lpv/cascades.hpp"
+#include "cascades/cascades.hpp"
 #include "lpv/light_shafts.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "render/renderer.hpp"
@@ -36,7 +36,6 @@ class LightShaftsTest : public test::SharedProgramsTest {
     settings.component = component;
     settings.size = kShaftsSize;
     settings.fullFloatTarget = true;
-    settings.lpv.transport = LpvTransport::propagate;
     settings.lpv.shafts = true;
     return settings;
   }

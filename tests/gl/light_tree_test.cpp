@@ -1,5 +1,6 @@
-// The light tree's nodes against sums in double precision over the texels below them (shaders/lpv/gather/tree.glsl).
-#include "lpv/light_tree.hpp"
+// The light tree's nodes against sums in double precision over the texels below them
+// (shaders/irradiance_cache/gather/tree.glsl).
+#include "irradiance_cache/light_tree.hpp"
 #include "support/gl_fixture.hpp"
 
 #include <gtest/gtest.h>

@@ -508,7 +508,7 @@ TEST_F(LightsGl, WhatASceneHasNoneOfLeavesNoTrace) {
     for (int i = 0; i < 3; ++i) renderer.render(viewFrom({0, 0, 0.5}, {0, 0, -1}, 1.0));
     renderer.timer().drain();
     const std::string text = resources(library);
-    for (const char* word : {"spot", "point s", "rsm point", "LightBlock", "lights", "Cascade", "clipFromPlace["})
+    for (const char* word : {"spot", "point s", "rsm point", "LightBlock", "lights", "SunCascade", "clipFromPlace["})
       EXPECT_EQ(text.find(word), std::string::npos) << word << " in\n" << text;
     for (const auto& stage : renderer.timer().statistics()) {
       EXPECT_EQ(stage.name.find("spot"), std::string::npos);

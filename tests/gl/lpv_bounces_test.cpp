@@ -5,7 +5,7 @@
 #include "support/small_scenes.hpp"
 
 #include "base/error.hpp"
-#include "lpv/cascades.hpp"
+#include "cascades/cascades.hpp"
 #include "render/renderer.hpp"
 
 #include <algorithm>
@@ -303,6 +303,7 @@ TEST_F(LpvViews, TheCamerasSurfelsHaveTheAreaOfWhatItSees) {
     builder.plate({0.0, 0.0, 0.0}, {4.0, 0.0, 0.0}, 3.0 * glm::dvec3(0.0, std::cos(tilt), std::sin(tilt)), grey);
     builder.sun({0.0, -1.0, -1.0}, glm::vec3(1.0f));
     RenderSettings s;
+    s.technique = Technique::lpv;
     s.component = Component::indirect;
     s.size = {32, 32};
     s.lpv.cascades.cells = 16;

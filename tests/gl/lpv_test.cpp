@@ -9,7 +9,7 @@
 #include "support/lpv_on_gl.hpp"
 #include "support/temp_folder.hpp"
 
-#include "lpv/cascades.hpp"
+#include "cascades/cascades.hpp"
 
 #include <fmt/format.h>
 

@@ -138,8 +138,9 @@ RenderSettings smallSettings() {
   settings.shadow.size = 128;
   settings.rsm.size = 32;
   settings.lights.spotSize = settings.lights.pointSize = 32;
-  settings.lpv.cascades.cells = 8;
-  settings.lpv.samples = 16;
+  settings.lpv.cascades.cells = settings.cache.cascades.cells = 8;
+  settings.cache.samples = 16;
+  settings.cache.bounces = 1;
   settings.radiosity.solution.hemicubes.resolution = 32;
   settings.radiosity.solution.patches.longestEdge = 6.0;
   return settings;
@@ -148,14 +149,16 @@ RenderSettings smallSettings() {
 TEST_F(Memory, GpuBytesAreWhatTheDriverWasAskedFor) {
   const Scene lean = test::openBox(), full = everything();
   for (const Scene* scene : {&lean, &full})
-    for (const Technique technique : {Technique::direct, Technique::rsm, Technique::lpv, Technique::radiosity})
-      for (const LpvTransport transport : {LpvTransport::propagate, LpvTransport::gather, LpvTransport::rays})
+    for (const Technique technique :
+         {Technique::direct, Technique::rsm, Technique::lpv, Technique::irradianceCache, Technique::radiosity})
+      for (const CacheTransport transport : {CacheTransport::rays, CacheTransport::gather})
         for (const int cascades : {1, 2}) {
-          if (technique != Technique::lpv && transport != LpvTransport::propagate) continue;
-          if (cascades == 2 && (technique == Technique::radiosity || transport != LpvTransport::propagate)) continue;
+          const bool isCache = technique == Technique::irradianceCache;
+          if (!isCache && transport != CacheTransport::rays) continue;
+          if (cascades == 2 && (technique == Technique::radiosity || isCache)) continue;
           RenderSettings settings = smallSettings();
           settings.technique = technique;
-          settings.lpv.transport = transport;
+          settings.cache.transport = transport;
           settings.sunCascades.cascades = cascades;
           settings.gather.lowResolution = cascades == 1 ? 4 : 1;
           const Allocations allocations;
@@ -214,14 +217,13 @@ void expectFlat(const char* what, int times, const Step& step) {
 TEST_F(Memory, AWalkTakesNoMoreInTheEndThanAtItsBeginning) {
   if (test::kSanitized) GTEST_SKIP() << "a sanitizer allocates, and keeps what was freed";
   const Scene scene = everything();
-  for (const LpvTransport transport : {LpvTransport::rays, LpvTransport::propagate}) {
+  for (const Technique technique : {Technique::irradianceCache, Technique::lpv}) {
     RenderSettings settings = smallSettings();
-    settings.technique = Technique::lpv;
-    settings.lpv.transport = transport;
+    settings.technique = technique;
     Renderer renderer(context(), programs(), scene, settings);
     std::size_t bytes = 0;
     const int frames = test::longTests() ? 2000 : 80;
-    expectFlat(nameOf(transport).data(), frames, [&](int i) {
+    expectFlat(nameOf(technique).data(), frames, [&](int i) {
       Camera camera = test::openBoxCamera();
       const double angle = 0.05 * i;
       camera.position += glm::dvec3(std::sin(angle), 0.3 * std::sin(0.7 * angle), std::cos(angle));
@@ -255,8 +257,7 @@ TEST_F(Memory, ReloadedScenesLeaveNothing) {
     const Scene scene = loadScene(file);
     gl::ProgramLibrary library;
     RenderSettings settings = smallSettings();
-    settings.technique = Technique::lpv;
-    settings.lpv.transport = LpvTransport::rays;
+    settings.technique = Technique::irradianceCache;
     Renderer renderer(context(), library, scene, settings);
     for (int frame = 0; frame < 3; ++frame) renderer.render(scene.cameras.front());
     renderer.drain();

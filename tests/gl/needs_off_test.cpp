@@ -121,21 +121,24 @@ TEST_F(NeedsOff, EachTransportLeavesTheOthersStagesOut) {
   struct Made {
     std::string programs, stages;
     std::vector<std::string> leftOut;
-    bool receivers, volume;
+    bool cache, volume;
     std::size_t gpuBytes;
   };
-  const auto draw = [](LpvTransport transport, Component component, const Scene& scene, int bounces = 1) {
+  using Way = std::pair<Technique, CacheTransport>;
+  const Way propagate{Technique::lpv, CacheTransport::rays}, rays{Technique::irradianceCache, CacheTransport::rays},
+      gather{Technique::irradianceCache, CacheTransport::gather};
+  const auto draw = [](const Way& way, Component component, const Scene& scene, int bounces = 1) {
     gl::ProgramLibrary library;
     RenderSettings settings;
-    settings.technique = Technique::lpv;
+    settings.technique = way.first;
     settings.component = component;
     settings.size = {48, 32};
     settings.shadow.size = 256;
     settings.rsm.size = 64;
-    settings.lpv.cascades.cells = 8;
-    settings.lpv.transport = transport;
-    settings.lpv.bounces = bounces;
-    settings.lpv.samples = 16;
+    settings.lpv.cascades.cells = settings.cache.cascades.cells = 8;
+    settings.cache.transport = way.second;
+    settings.cache.bounces = bounces;
+    settings.cache.samples = 16;
     Renderer renderer(context(), library, scene, settings);
     renderer.renderToTheEnd(test::openBoxCamera());
     Made drawn;
@@ -145,7 +148,7 @@ TEST_F(NeedsOff, EachTransportLeavesTheOthersStagesOut) {
         drawn.programs += program->name() + ":" + resource + "\n";
     for (const gl::StageStatistics& stage : renderer.timer().statistics()) drawn.stages += stage.name + "\n";
     drawn.leftOut = renderer.leftOut();
-    drawn.receivers = renderer.receivers() != nullptr;
+    drawn.cache = renderer.irradianceCache() != nullptr;
     drawn.volume = renderer.lpv() != nullptr;
     drawn.gpuBytes = renderer.gpuBytes();
     return drawn;
@@ -156,9 +159,9 @@ TEST_F(NeedsOff, EachTransportLeavesTheOthersStagesOut) {
   };
   // Programs, stages and resources of one are not those of the other.
   Scene scene = test::openBox();
-  const Made propagated = draw(LpvTransport::propagate, Component::all, scene),
-             traced = draw(LpvTransport::rays, Component::all, scene);
-  for (const char* part : {"receivers", "lpv paths", "lpvReceived", "TriangleBlock", "visibleDepth", "PathBlock"}) {
+  const Made propagated = draw(propagate, Component::all, scene), traced = draw(rays, Component::all, scene);
+  for (const char* part :
+       {"cache list records", "cache paths", "cacheTexture", "TriangleBlock", "visibleDepth", "PathBlock"}) {
     EXPECT_FALSE(has(propagated.programs, part)) << part << " in\n" << propagated.programs;
     EXPECT_TRUE(has(traced.programs, part)) << part << " in\n" << traced.programs;
   }
@@ -166,7 +169,7 @@ TEST_F(NeedsOff, EachTransportLeavesTheOthersStagesOut) {
     EXPECT_FALSE(has(traced.programs, part)) << part << " in\n" << traced.programs;
     EXPECT_TRUE(has(propagated.programs, part)) << part << " in\n" << propagated.programs;
   }
-  for (const char* stage : {"receivers", "geometry\n"}) {
+  for (const char* stage : {"irradiance cache", "geometry\n"}) {
     EXPECT_FALSE(has(propagated.stages, stage)) << stage;
     EXPECT_TRUE(has(traced.stages, stage)) << stage;
   }
@@ -174,41 +177,41 @@ TEST_F(NeedsOff, EachTransportLeavesTheOthersStagesOut) {
     EXPECT_FALSE(has(traced.stages, stage)) << stage;
     EXPECT_TRUE(has(propagated.stages, stage)) << stage;
   }
-  EXPECT_FALSE(propagated.receivers);
+  EXPECT_FALSE(propagated.cache);
   EXPECT_TRUE(propagated.volume);
-  EXPECT_TRUE(traced.receivers);
+  EXPECT_TRUE(traced.cache);
   EXPECT_FALSE(traced.volume);
-  EXPECT_TRUE(leaves(propagated, "receivers"));
-  EXPECT_FALSE(leaves(traced, "receivers"));
+  EXPECT_TRUE(leaves(propagated, "irradiance cache"));
+  EXPECT_FALSE(leaves(traced, "irradiance cache"));
   for (const char* name : {"reflective shadow map", "light propagation volume"}) {
     EXPECT_TRUE(leaves(traced, name)) << name;
     EXPECT_FALSE(leaves(propagated, name)) << name;
   }
 
-  // Direct light of a scene without emissive surfaces and sky is shadow maps alone: no receivers, and as many bytes as
+  // Direct light of a scene without emissive surfaces and sky is shadow maps alone: no records, and as many bytes as
   // direct light has.
-  const Made direct = draw(LpvTransport::rays, Component::direct, scene);
-  EXPECT_FALSE(direct.receivers);
-  EXPECT_FALSE(has(direct.programs, "lpv")) << direct.programs;
-  EXPECT_FALSE(has(direct.stages, "receivers"));
-  EXPECT_EQ(direct.gpuBytes, draw(LpvTransport::propagate, Component::direct, scene).gpuBytes);
+  const Made direct = draw(rays, Component::direct, scene);
+  EXPECT_FALSE(direct.cache);
+  EXPECT_FALSE(has(direct.programs, "cache")) << direct.programs;
+  EXPECT_FALSE(has(direct.stages, "irradiance cache"));
+  EXPECT_EQ(direct.gpuBytes, draw(propagate, Component::direct, scene).gpuBytes);
   // Gathered, one bounce of the sun needs neither points that keep light nor rays to them; more bounces do.
-  const Made once = draw(LpvTransport::gather, Component::all, scene),
-             twice = draw(LpvTransport::gather, Component::all, scene, 2);
-  for (const char* part : {"lpv gather around", "lpv trace bounces", "lpv bounce", "LpvLinks", "bounceSlots"}) {
+  const Made once = draw(gather, Component::all, scene), twice = draw(gather, Component::all, scene, 2);
+  for (const char* part :
+       {"cache gather hemisphere", "cache trace bounces", "cache bounce", "BounceLinks", "bounceSlots"}) {
     EXPECT_FALSE(has(once.programs, part)) << part << " in\n" << once.programs;
     EXPECT_TRUE(has(twice.programs, part)) << part << " in\n" << twice.programs;
   }
-  EXPECT_FALSE(has(twice.programs, "lpv gather emission")) << twice.programs;
+  EXPECT_FALSE(has(twice.programs, "cache gather emission")) << twice.programs;
   EXPECT_LT(once.gpuBytes, twice.gpuBytes);
 
   scene.environment = Environment{};
   scene.environment->radiance = glm::vec3(1.0f);
-  EXPECT_TRUE(draw(LpvTransport::rays, Component::direct, scene).receivers);
+  EXPECT_TRUE(draw(rays, Component::direct, scene).cache);
   // And of one without any light there is nothing to keep.
   scene.environment.reset();
   scene.sun.reset();
-  EXPECT_FALSE(draw(LpvTransport::rays, Component::all, scene).receivers);
+  EXPECT_FALSE(draw(rays, Component::all, scene).cache);
 }
 
 }  // namespace

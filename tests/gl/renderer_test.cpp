@@ -26,6 +26,7 @@ class RendererGl : public test::GlTest {
  protected:
   static RenderSettings settings(Component component = Component::all, glm::ivec2 size = {48, 32}) {
     RenderSettings s;
+    s.technique = Technique::lpv;
     s.component = component;
     s.size = size;
     s.fullFloatTarget = true;
@@ -291,14 +292,14 @@ TEST_F(RendererGl, GpuBytesIsTheSumOfWhatIsThere) {
   s.lpv.cascades.cascades = 1;
   const std::size_t cells = 16 * 16 * 16, corners = 17 * 17 * 17;
   const std::size_t rsm = 256 * 256 * (16 + 8 + 16 + 4), bricks = 16 + 3 * 4 * 4 * 4 * 4,
-                    lpv = 3 * cells * (8 + 8 + 4 * 16) + bricks + corners * 4 * 16 + sizeof(shared::LpvConstants);
+                    lpv = 3 * cells * (8 + 8 + 4 * 16) + bricks + corners * 4 * 16 + sizeof(shared::CascadeConstants);
   EXPECT_EQ(Renderer(context(), programs(), scene, s).gpuBytes(), geometry + targets + frame + rsm + lpv);
   s.lpv.blocking = false;
   EXPECT_EQ(Renderer(context(), programs(), scene, s).gpuBytes(),
             geometry + targets + frame + rsm + lpv - corners * 4 * 16);
   s.lpv.iterations = 0;
   EXPECT_EQ(Renderer(context(), programs(), scene, s).gpuBytes(),
-            geometry + targets + frame + rsm + 3 * cells * 16 + sizeof(shared::LpvConstants));
+            geometry + targets + frame + rsm + 3 * cells * 16 + sizeof(shared::CascadeConstants));
 }
 
 TEST_F(RendererGl, WithoutLightOrAlbedoIndirectIsExactlyZero) {

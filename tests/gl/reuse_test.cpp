@@ -20,9 +20,10 @@ class Reuse : public test::SharedProgramsTest {
     s.fullFloatTarget = true;
     s.shadow.size = s.rsm.size = 128;
     s.lights.spotSize = s.lights.pointSize = 128;
-    s.lpv.cascades.cells = 8;
-    s.lpv.cascades.cascades = 2;
-    s.lpv.samples = 64;
+    s.lpv.cascades.cells = s.cache.cascades.cells = 8;
+    s.lpv.cascades.cascades = s.cache.cascades.cascades = 2;
+    s.cache.samples = 64;
+    s.cache.bounces = 1;
     return s;
   }
   /// A sun, a spot and an omnidirectional lamp.
@@ -104,18 +105,17 @@ TEST_F(Reuse, PicturesAreTheSameBitByBitForEachTechnique) {
   Case original{"original", settings(Technique::lpv)};
   applyFidelity(original.settings, Fidelity::original);
   cases.push_back(original);
-  for (const int bounces : {1, LpvSettings::kAllBounces}) {
-    Case c{fmt::format("gather, bounces {}", bounces), settings(Technique::lpv)};
-    c.settings.lpv.transport = LpvTransport::gather;
-    c.settings.lpv.bounces = bounces;
+  for (const int bounces : {1, IrradianceCacheSettings::kAllBounces}) {
+    Case c{fmt::format("gather, bounces {}", bounces), settings(Technique::irradianceCache)};
+    c.settings.cache.transport = CacheTransport::gather;
+    c.settings.cache.bounces = bounces;
     cases.push_back(c);
   }
-  for (const int bounces : {2, LpvSettings::kAllBounces})
+  for (const int bounces : {2, IrradianceCacheSettings::kAllBounces})
     for (const bool toTheEnd : {true, false}) {
-      Case c{fmt::format("rays, bounces {}{}", bounces, toTheEnd ? ", settled" : ""), settings(Technique::lpv),
-             toTheEnd};
-      c.settings.lpv.transport = LpvTransport::rays;
-      c.settings.lpv.bounces = bounces;
+      Case c{fmt::format("rays, bounces {}{}", bounces, toTheEnd ? ", settled" : ""),
+             settings(Technique::irradianceCache), toTheEnd};
+      c.settings.cache.bounces = bounces;
       cases.push_back(c);
     }
   for (const Case& c : cases)
@@ -161,10 +161,9 @@ TEST_F(Reuse, AStageRunsWhenItsInputsChangedAndOnlyThen) {
   EXPECT_EQ(rsm.stage("gather full").ran, cameras.size());
 }
 
-TEST_F(Reuse, SettledReceiversCostNothingAndForgettingBeginsAnew) {
+TEST_F(Reuse, ASettledCacheCostsNothingAndForgettingBeginsAnew) {
   const Scene scene = room();
-  RenderSettings s = settings(Technique::lpv);
-  s.lpv.transport = LpvTransport::rays;
+  const RenderSettings s = settings(Technique::irradianceCache);
   Renderer renderer(context(), library(), scene, s);
   const auto ran = [&](const std::string& name) {
     for (const gl::StageStatistics& stage : renderer.timer().statistics())
@@ -172,25 +171,25 @@ TEST_F(Reuse, SettledReceiversCostNothingAndForgettingBeginsAnew) {
     return std::size_t{0};
   };
   renderer.renderToTheEnd(test::openBoxCamera());
-  const std::size_t receivers = ran("receivers"), geometry = ran("geometry");
-  EXPECT_GT(receivers, 0u);
+  const std::size_t records = ran("irradiance cache"), geometry = ran("geometry");
+  EXPECT_GT(records, 0u);
   const Image first = renderer.readRadiance();
   for (int i = 0; i < 5; ++i) renderer.render(test::openBoxCamera());
-  EXPECT_EQ(ran("receivers"), receivers);
+  EXPECT_EQ(ran("irradiance cache"), records);
   EXPECT_EQ(ran("geometry"), geometry);
   EXPECT_EQ(ran("shadow"), 1u);
   EXPECT_EQ(first.pixels, renderer.readRadiance().pixels);
   renderer.forget();
   renderer.render(test::openBoxCamera());
   EXPECT_EQ(ran("shadow"), 2u);
-  EXPECT_EQ(ran("receivers"), receivers + 1);
-  // Another size shows other points, so receivers are asked for anew, even where the view is the same.
+  EXPECT_EQ(ran("irradiance cache"), records + 1);
+  // Another size shows other points, so records are asked for anew, even where the view is the same.
   renderer.renderToTheEnd(test::openBoxCamera());
   renderer.render(test::openBoxCamera());
-  const std::size_t before = ran("receivers");
+  const std::size_t before = ran("irradiance cache");
   renderer.resize({96, 64});
   renderer.render(test::openBoxCamera());
-  EXPECT_EQ(ran("receivers"), before + 1);
+  EXPECT_EQ(ran("irradiance cache"), before + 1);
 }
 
 TEST_F(Reuse, ForgettingDrawsMapsAndVolumeAnew) {

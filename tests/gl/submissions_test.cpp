@@ -2,9 +2,9 @@
 // What is cut stays the same bit by bit. Those of path tracing, of radiosity's shadow rays and of hemicubes are in
 // PathTracerTest, RadiosityDirect and Hemicube.
 #include "gl/pieces.hpp"
-#include "lpv/light_gather.hpp"
+#include "irradiance_cache/light_gather.hpp"
 #include "render/renderer.hpp"
-#include "shared/lpv_receivers.h"
+#include "shared/irradiance_cache.h"
 #include "support/gl_fixture.hpp"
 #include "support/media_scenes.hpp"
 #include "support/small_scenes.hpp"
@@ -113,7 +113,6 @@ TEST_F(Submissions, LightShafts) {
   scene.cameraMedium = 0;
   RenderSettings settings;
   settings.technique = Technique::lpv;
-  settings.lpv.transport = LpvTransport::propagate;
   settings.lpv.shafts = true;
   expectSameInPieces(scene, settings, 65536.0);
 }
@@ -123,24 +122,27 @@ TEST_F(Submissions, RoundsAreHandedOverOneByOne) {
   Scene scene = test::openBox();
   scene.points.push_back({{0.3, 1.5, 0.2}, glm::vec3(2.0f)});
   RenderSettings settings;
-  settings.technique = Technique::lpv;
   settings.size = {16, 16};
-  settings.lpv.cascades.cells = 32;
-  settings.lpv.rays = 8;
-  settings.lpv.samples = 64;
+  settings.cache.rays = 8;
+  settings.cache.samples = 64;
   settings.lpv.iterations = 128;
-  for (const LpvTransport transport : {LpvTransport::rays, LpvTransport::gather, LpvTransport::propagate}) {
-    settings.lpv.transport = transport;
-    settings.lpv.bounces = transport == LpvTransport::gather ? LpvSettings::kAllBounces : 1;
+  using Way = std::pair<Technique, CacheTransport>;
+  for (const auto& [technique, transport] :
+       {Way{Technique::irradianceCache, CacheTransport::rays}, Way{Technique::irradianceCache, CacheTransport::gather},
+        Way{Technique::lpv, CacheTransport::rays}}) {
+    settings.technique = technique;
+    settings.cache.transport = transport;
+    settings.cache.bounces = transport == CacheTransport::gather ? IrradianceCacheSettings::kAllBounces : 1;
     Renderer renderer(context(), library(), scene, settings);
     gl::Submission::forget();
     renderer.renderToTheEnd(test::openBoxCamera());
-    EXPECT_LE(gl::Submission::largest(), kMost) << static_cast<int>(transport);
-    EXPECT_GT(gl::Submission::largest(), 0.25 * kMost) << static_cast<int>(transport);
+    EXPECT_LE(gl::Submission::largest(), kMost) << nameOf(technique) << " " << nameOf(transport);
+    EXPECT_GT(gl::Submission::largest(), 0.25 * kMost) << nameOf(technique) << " " << nameOf(transport);
   }
 }
 
-// The walk of shaders/lpv/gather/gather.comp through a light tree, with other choices of the nodes that are opened.
+// The walk of shaders/irradiance_cache/gather/gather.comp through a light tree, with other choices of the nodes that
+// are opened.
 double turnsOfWalk(int depth, int top, int layers, const std::function<bool(int turn, int depth)>& opens) {
   const std::uint64_t bits = 2 * static_cast<std::uint64_t>(top);
   const auto firstOf = [](int d) { return ((std::uint64_t{1} << (2 * d)) - 1) / 3; };
@@ -153,7 +155,7 @@ double turnsOfWalk(int depth, int top, int layers, const std::function<bool(int 
   std::uint64_t coarsest = 0, root = firstTop, node = root;
   int turn = 0;
   for (; coarsest < tops; ++turn) {
-    if (node < firstOf(depth) && turn < LPV_MOST_OPENING && opens(turn, depthOf(node))) {
+    if (node < firstOf(depth) && turn < CACHE_MOST_OPENING && opens(turn, depthOf(node))) {
       node = 4 * node + 1;
       continue;
     }
@@ -162,7 +164,7 @@ double turnsOfWalk(int depth, int top, int layers, const std::function<bool(int 
       ++node;
       continue;
     }
-    coarsest += LPV_LANES;
+    coarsest += CACHE_LANES;
     root = node = firstTop + (coarsest & ((std::uint64_t{1} << bits) - 1));
   }
   return turn;
@@ -173,37 +175,35 @@ TEST_F(Submissions, NoLaneGathersForLongerThanIsSaid) {
   for (const auto& [depth, layers] : {std::pair(8, 1), {8, 6}, {12, 6}, {13, 1}}) {
     const int top = std::min(depth - 1, LightTree::kTop);
     // Without the texels near by, the way to a leaf and the ray.
-    const double most = LightGather::turnsOfLane(depth, top, layers) - LPV_MOST_NEAR - 4.0 * depth - gl::kTurnsOfRay;
-    for (int last = LPV_MOST_OPENING - 3 * depth; last <= LPV_MOST_OPENING; ++last) {
+    const double most = LightGather::turnsOfLane(depth, top, layers) - CACHE_MOST_NEAR - 4.0 * depth - gl::kTurnsOfRay;
+    for (int last = CACHE_MOST_OPENING - 3 * depth; last <= CACHE_MOST_OPENING; ++last) {
       // Waits before the last levels, then opens all the way down.
       const double turns =
           turnsOfWalk(depth, top, layers, [&](int turn, int at) { return turn >= last - depth || at + 4 < depth; });
       EXPECT_LE(turns, most) << depth << ", " << layers;
       longest = std::max(longest, turns / most);
     }
-    EXPECT_LE(LightGather::turnsOfLane(depth, top, layers) * LPV_LANES * LPV_PART_GROUPS, kMost);
+    EXPECT_LE(LightGather::turnsOfLane(depth, top, layers) * CACHE_LANES * CACHE_PART_GROUPS, kMost);
   }
   EXPECT_GT(longest, 0.98);
 }
 
-// What the volume does in one go has a size of its own, which its settings limit; receivers come in lists that end
+// What the volume does in one go has a size of its own, which its settings limit; records come in lists that end
 // where a submission would be too long.
 TEST_F(Submissions, VolumesAtTheirLargest) {
   RenderSettings settings;
   settings.lpv.cascades.cells = 128;
-  settings.lpv.cascades.cascades = LPV_MAX_CASCADES;
+  settings.lpv.cascades.cascades = MAX_CASCADES;
   settings.rsm.size = 8192;
   for (const bool hasPoints : {false, true}) EXPECT_LE(LpvFrame::largestTurns(settings, hasPoints), kMost);
   const Scene scene = test::openBox();
   settings = {};
-  settings.technique = Technique::lpv;
-  for (const LpvTransport transport : {LpvTransport::rays, LpvTransport::gather})
+  for (const CacheTransport transport : {CacheTransport::rays, CacheTransport::gather})
     for (const int rays : {1, 8, 64}) {
-      settings.lpv.transport = transport;
-      settings.lpv.rays = rays;
-      settings.lpv.bounces = transport == LpvTransport::gather ? LpvSettings::kAllBounces : 1;
-      settings.lpv.bounceCells = 64;
-      settings.lpv.cascades.cells = 32;
+      settings.cache.transport = transport;
+      settings.cache.rays = rays;
+      settings.cache.bounces = transport == CacheTransport::gather ? IrradianceCacheSettings::kAllBounces : 1;
+      settings.cache.bounceCells = 64;
       settings.size = {16, 16};
       const Renderer renderer(context(), library(), scene, settings);
       EXPECT_LE(renderer.largestTurns(), kMost) << rays;

@@ -21,6 +21,7 @@ class Pictures : public test::GlTest {
   }
   static RenderSettings settings(Component component, glm::ivec2 size = {96, 54}) {
     RenderSettings s;
+    s.technique = Technique::lpv;
     s.component = component;
     s.size = size;
     s.fullFloatTarget = true;

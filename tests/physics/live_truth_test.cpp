@@ -46,7 +46,6 @@ class LiveTruth : public SharedProgramsTest {
       settings.technique = technique;
       settings.size = kSize;
       settings.fullFloatTarget = true;
-      settings.lpv.transport = LpvTransport::propagate;
       Renderer renderer(context(), library(), scene, settings);
       for (int i = static_cast<int>(technique) % 3; i < views; i += 3) {
         const Camera camera = path.view(i * (path.viewCount() - 1) / std::max(views - 1, 1));

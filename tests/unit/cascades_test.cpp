@@ -1,5 +1,5 @@
 // Where cascades lie: multiples of their cell size, still while the camera moves by less than a cell, at any distance.
-#include "lpv/cascades.hpp"
+#include "cascades/cascades.hpp"
 
 #include <gtest/gtest.h>
 
@@ -193,7 +193,7 @@ TEST(Cascades, WhatReceiversReachIsWithinTheirGrid) {
       camera.up = direction();
       camera.verticalFov = 0.3 + 0.9 * std::abs(uniform(random));
       const double aspect = 1.3 + 0.5 * uniform(random);
-      const auto cascades = placeReceiverCascades(settings, scene, camera, aspect);
+      const auto cascades = placeCascadesAround(settings, scene, camera, aspect);
       EXPECT_EQ(cascades[0].centre, camera.position);
       const glm::dvec3 right = glm::normalize(glm::cross(camera.direction, camera.up)),
                        up = glm::cross(right, camera.direction);
@@ -211,7 +211,7 @@ TEST(Cascades, WhatReceiversReachIsWithinTheirGrid) {
   // 0.8 * 16 cells c + sqrt(13.5^2 - (0.8 * 16)^2 (1 - c^2)), c = 1 / sqrt(1 + tan^2 30 degrees (1 + (16/9)^2)).
   Camera camera;
   camera.verticalFov = std::numbers::pi / 3.0;
-  EXPECT_NEAR(placeReceiverCascades({32, 2, 2.0}, Bounds{}, camera, 16.0 / 9.0)[0].reach, 17.6, 0.05);
+  EXPECT_NEAR(placeCascadesAround({32, 2, 2.0}, Bounds{}, camera, 16.0 / 9.0)[0].reach, 17.6, 0.05);
 }
 
 }  // namespace

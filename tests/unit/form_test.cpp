@@ -71,7 +71,7 @@ TEST(Form, NoStructureOfAStorageBlockIsAnArgument) {
   };
   EXPECT_TRUE(offends("  flight = medium >= 0 ? beginFlight(path, media[medium], numbers) : 3e38;"));
   EXPECT_TRUE(offends("  return readTexture(materials[material].maskTexture, texCoord).a < 0.5;"));
-  EXPECT_FALSE(offends("  bool fades = receivers[index].presence < fullPresence(receivers[index].paths);"));
+  EXPECT_FALSE(offends("  bool fades = receivers[index].presence < fullBlendWeight(receivers[index].paths);"));
   for (const auto& [file, lines] : shaders)
     for (std::size_t i = 0; i < lines.size(); ++i)
       EXPECT_FALSE(file.starts_with("shaders/") && offends(lines[i])) << file << ":" << i + 1;

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 std::map<std::string, std::set<std::string>> layers() {
   std::map<std::string, std::set<std::string>> result;
   std::istringstream lines(readFileText(fs::path(LUCERNA_SOURCE_DIR) / "engine/CMakeLists.txt"));
-  const std::regex layer("^lucerna_layer\\(([a-z ]+)\\)$");
+  const std::regex layer("^lucerna_layer\\(([a-z_ ]+)\\)$");
   for (std::string line; std::getline(lines, line);) {
     std::smatch match;
     if (!std::regex_match(line, match, layer)) continue;
@@ -53,7 +53,7 @@ std::string codeOf(const fs::path& file) {
 
 TEST(Layers, FoldersIncludeThoseBelowThemAlone) {
   const fs::path engine = fs::path(LUCERNA_SOURCE_DIR) / "engine";
-  const std::regex include("(?:^|\n)#include \"([a-z]+)/");
+  const std::regex include("(?:^|\n)#include \"([a-z_]+)/");
   const std::map<std::string, std::set<std::string>> mayInclude = layers();
   std::size_t seen = 0;
   for (const fs::directory_entry& folder : fs::directory_iterator(engine)) {

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <map>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -145,38 +146,29 @@ TEST(Settings, UnknownKeysAreRefusedWithThoseThatThereAre) {
             std::string::npos);
 }
 
-TEST(Settings, FormerSpellingsAreUnderstood) {
-  EXPECT_EQ(formerKey("rad.edge"), "radiosity.edge");
-  EXPECT_EQ(formerKey("rad.near"), "radiosity.part-distance");
-  EXPECT_EQ(formerKey("rsm.near"), "rsm.near-field");
-  EXPECT_EQ(formerKey("radiosity.edge"), "");
-  EXPECT_EQ(findSetting("rad.edge"), findSetting("radiosity.edge"));
-  EXPECT_EQ(parseAssignment("rsm.near=quad").setting->key, "rsm.near-field");
-  EXPECT_EQ(findSetting("rad.nothing"), nullptr);
-  RenderSettings settings;
-  parseSetting(*findSetting("lpv.blocking"), settings, "on");
-  EXPECT_EQ(printSetting(*findSetting("lpv.blocking"), settings), "rsm");
-}
-
-// A technique's settings begin with its name; each technique but the path tracer has some, and none reads another's.
+// A technique's settings begin with its name (the irradiance cache's with cache); none reads another's.
 TEST(Settings, AreReadByTheirTechnique) {
+  const std::map<std::string, Technique> owners{{"lpv", Technique::lpv},
+                                                {"cache", Technique::irradianceCache},
+                                                {"radiosity", Technique::radiosity},
+                                                {"path", Technique::path}};
   for (const Setting& setting : allSettings()) {
-    const std::string stage(setting.key.substr(0, setting.key.find('.')));
-    for (const Technique technique : {Technique::rsm, Technique::lpv, Technique::radiosity}) {
-      const bool isOwn = stage == nameOf(technique), isAnothers = !isOwn && (stage == "lpv" || stage == "radiosity");
-      EXPECT_TRUE(!isOwn || isReadBy(setting, technique)) << setting.key;
-      EXPECT_FALSE(isAnothers && isReadBy(setting, technique)) << setting.key;
+    const auto owner = owners.find(std::string(setting.key.substr(0, setting.key.find('.'))));
+    if (owner != owners.end()) {
+      EXPECT_EQ(onlyTechnique(setting), owner->second) << setting.key;
     }
   }
   RenderSettings settings;
-  settings.technique = Technique::lpv;
-  settings.lpv.transport = LpvTransport::rays;
-  EXPECT_TRUE(isRead(*findSetting("lpv.samples"), settings));
-  EXPECT_FALSE(isRead(*findSetting("lpv.iterations"), settings));
-  EXPECT_EQ(onlyTransport(*findSetting("lpv.iterations")), LpvTransport::propagate);
-  EXPECT_EQ(onlyTransport(*findSetting("lpv.bounce-cells")), LpvTransport::gather);
+  EXPECT_EQ(nameOf(settings.technique), "irradiance-cache");
+  EXPECT_TRUE(isRead(*findSetting("cache.samples"), settings));
+  settings.cache.transport = CacheTransport::gather;
+  EXPECT_FALSE(isRead(*findSetting("cache.samples"), settings));
+  EXPECT_EQ(onlyTransport(*findSetting("cache.samples")), CacheTransport::rays);
+  EXPECT_EQ(onlyTransport(*findSetting("cache.bounce-cells")), CacheTransport::gather);
+  EXPECT_EQ(onlyTransport(*findSetting("cache.cells")), std::nullopt);
   EXPECT_EQ(onlyTransport(*findSetting("lpv.cells")), std::nullopt);
-  EXPECT_EQ(onlyTransport(*findSetting("rsm.size")), std::nullopt);
+  EXPECT_EQ(onlyTechnique(*findSetting("rsm.samples")), Technique::rsm);
+  EXPECT_EQ(onlyTechnique(*findSetting("rsm.size")), std::nullopt);
 }
 
 TEST(Settings, SourcesAreInTheListOfReferences) {

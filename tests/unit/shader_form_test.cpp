@@ -387,7 +387,7 @@ TEST(ShaderForm, FloatsAreClampedBeforeTheyBecomeIntegers) {
   EXPECT_EQ(count("vec2 at = f();\nint i = 3;\nivec3 texel = ivec3(at, i);"), 1u);
   EXPECT_EQ(count("vec2 at = f();\nint i = 3;\nivec3 texel = ivec3(at, i);  // bounded: f is small"), 0u);
   EXPECT_EQ(count("ivec2 at = f(), to = g();\nuint n = uint(at.x + 2 * to[1]);"), 0u);
-  EXPECT_EQ(count("uint n = uint(lpv.shape.x), m = uint(lpv.blendBand);"), 1u);
+  EXPECT_EQ(count("uint n = uint(grids.shape.x), m = uint(grids.blendBand);"), 1u);
 }
 
 // Of a loop the first condition is a bound of constants, uniforms or sizes, or `// ends: reason` says why it ends.
@@ -401,7 +401,7 @@ TEST(ShaderForm, LoopsEndWhateverTheDataAre) {
   EXPECT_EQ(count("for (;;) {}"), 1u);
   EXPECT_EQ(count("for (uint i = 0u; i < listed; ++i) {}"), 1u);
   EXPECT_EQ(count("for (uint i = 0u; i < uint(list.length()) && i < listed; ++i) {}"), 0u);
-  EXPECT_EQ(count("for (int i = 0; i < lpv.shape.y; ++i) {}"), 0u);
+  EXPECT_EQ(count("for (int i = 0; i < grids.shape.y; ++i) {}"), 0u);
   EXPECT_EQ(count("for (int i = 0; i < 4 || x; ++i) {}"), 1u);
   EXPECT_EQ(count("for (int i = 4; i > 0 && x; --i) {}"), 0u);
   EXPECT_EQ(count("do bits &= bits - 1u;\nwhile (bits != 0u);  // ends: each turn clears a bit"), 0u);

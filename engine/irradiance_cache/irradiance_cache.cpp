@@ -1,0 +1,417 @@
+#include "irradiance_cache/irradiance_cache.hpp"
+
+#include "base/error.hpp"
+#include "forward/light_views.hpp"
+#include "gl/pass.hpp"
+#include "gl/pieces.hpp"
+#include "rays/light_table.hpp"
+#include "shared/bindings.h"
+#include "shared/irradiance_cache.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lucerna {
+
+namespace {
+
+// GL_SHADER_STORAGE_BUFFER
+constexpr GLuint kSlotsBuffer = 1, kKeptBuffer = 2, kPrefetchBuffer = 2, kWorkBeforeBuffer = 3;
+constexpr GLuint kSlotsUnit = 7, kKeysUnit = 1, kSeenUnit = 6;  // where rays are traced, 0 has the materials
+constexpr std::uint32_t kSegmentsOfAll = 64;  // of a path that meets no records; it misses a share of albedo^64
+constexpr std::uint32_t kSoftwareTurns = 2000, kMostTurns = 1u << 16;  // like the path tracer's, less one segment
+constexpr std::size_t kMostPaths = std::size_t{1} << 20;  // per submission
+constexpr std::size_t kKeyPixels = std::size_t{1} << 23;  // number that a key distinguishes
+
+float largest(const glm::vec3& v) { return std::max({v.x, v.y, v.z}); }
+
+/// Typical irradiance from lamps, emissive surfaces and the sky.
+float typicalOf(const Scene& scene) {
+  constexpr float kPi = 3.14159265f;
+  float result = analyse(scene).anyLight() ? typicalIrradiance(scene) : 0.0f;
+  for (const Material& material : scene.materials) result = std::max(result, kPi * largest(material.emission));
+  if (scene.environment) {
+    const glm::dvec3 mean = scene.environment->picture ? meanRadiance(*scene.environment->picture) : glm::dvec3(1.0);
+    result = std::max(result, kPi * largest(scene.environment->radiance * glm::vec3(mean)));
+  }
+  return result > 0.0f ? std::clamp(result, 1e-30f, 1e30f) : 1.0f;
+}
+
+/// Whether the camera jumped, so that there is no previous picture to stay consistent with.
+bool isCut(const Cascade& before, const Cascade& now) {
+  constexpr std::int64_t kCells = 4;
+  const glm::i64vec3 moved = glm::abs(now.firstCell - before.firstCell);
+  return std::max({moved.x, moved.y, moved.z}) > kCells;
+}
+
+}  // namespace
+
+bool IrradianceCache::isNeeded(const SceneNeeds& needs, const IrradianceCacheSettings& settings, Light light) {
+  if (settings.transport == CacheTransport::gather) return LightGather::partsOf(needs, settings, light).any();
+  const bool extended = needs.emission || needs.environment;
+  return light == Light::direct ? extended : needs.indirect || extended;
+}
+
+IrradianceCache::IrradianceCache(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, const Scene& scene,
+                                 const glm::dvec3& origin, const IrradianceCacheSettings& settings, Light light)
+    : settings_(settings),
+      programs_(&programs),
+      scene_(scene, analyse(scene), capabilities, PathScene::Settings{true, true, {}}),
+      rayOrigin_(scene_.origin() - origin),
+      referenceIrradiance_(typicalOf(scene)),
+      clearTexture_(capabilities.clearTexture),
+      cached_(settings.bounces == IrradianceCacheSettings::kAllBounces && light != Light::direct) {
+  CHECK(settings.rays >= 1 && settings.rays <= CACHE_LANES && CACHE_LANES % settings.rays == 0, "rays = {}",
+        settings.rays);
+  // Slots of the grids, and the maximum number of records in them.
+  const auto cells = static_cast<std::size_t>(settings.cascades.cells),
+             cascades = static_cast<std::size_t>(settings.cascades.cascades);
+  const int layers = settings.cascades.cells * settings.cascades.cascades * CACHE_FACES;
+  if (layers > capabilities.max3dTextureSize)
+    throwMissingCapability(
+        "cache.cells={}: records take {} layers of a 3D texture; this driver has at most {} (GL_MAX_3D_TEXTURE_SIZE)",
+        settings.cascades.cells, layers, capabilities.max3dTextureSize);
+  const int lanes = settings.transport == CacheTransport::rays ? settings.rays : CACHE_LANES;  // per record
+  slots_ = cells * cells * cells * cascades * CACHE_FACES;
+  // Surfaces cross a grid in about cells^2 cells; times four, for the faces that each normal covers.
+  capacity_ = std::min(slots_, 24 * cells * cells * cascades);
+
+  // Allocate tables, records and their irradiance.
+  const auto words = [&](const std::string& name, std::size_t count) {
+    if (count > static_cast<std::size_t>(capabilities.maxTextureBufferSize))
+      throwMissingCapability(
+          "{}: {} texels; this driver's texture buffers have at most {} (GL_MAX_TEXTURE_BUFFER_SIZE)", name, count,
+          capabilities.maxTextureBufferSize);
+    return gl::BufferTexture(name, gl::Format::r32ui, count * sizeof(GLuint), nullptr, gl::Usage::dynamicCopy);
+  };
+  slotTable_ = words("cache slots", slots_);
+  keys_ = words("cache keys", slots_);
+  seen_ = words("cache seen", capacity_);
+  for (gl::Buffer& buffer : records_)
+    buffer = gl::Buffer("cache records", capacity_ * sizeof(shared::CacheRecord), nullptr, gl::Usage::dynamicCopy);
+  for (gl::Buffer& buffer : work_)
+    buffer = gl::Buffer("cache records' work", kWorkWords * sizeof(GLuint), nullptr, gl::Usage::dynamicCopy);
+  lit_ = gl::Buffer("cache lit records",
+                    std::min(capacity_, kMostPaths / static_cast<std::size_t>(lanes)) * sizeof(GLuint), nullptr,
+                    gl::Usage::dynamicCopy);
+  for (gl::Buffer* buffer : {&cascadeConstants_, &cascadeConstantsBefore_})
+    *buffer = gl::Buffer("cache cascades", sizeof(shared::CascadeConstants), nullptr, gl::Usage::dynamicDraw);
+  constants_ = gl::Buffer("cache record constants", sizeof(shared::CacheConstants), nullptr, gl::Usage::dynamicDraw);
+  pathConstants_ = gl::Buffer("cache path constants", sizeof(shared::PathConstants), nullptr, gl::Usage::dynamicDraw);
+  const gl::Sampling linear{gl::Filter::linear, gl::Filter::linear, gl::Wrap::border};
+  irradiance_ = gl::Texture("cache received irradiance", settings.fullFloat ? gl::Format::rgba32f : gl::Format::rgba16f,
+                            glm::ivec3(settings.cascades.cells, settings.cascades.cells, layers), linear);
+  // An empty list is one point long: mark always has it bound.
+  prefetchPoints_ = gl::Buffer("cache prefetch points",
+                               static_cast<std::size_t>(std::max(settings.prefetch, 1)) * sizeof(shared::PrefetchPoint),
+                               nullptr, gl::Usage::dynamicCopy);
+  ring_ = std::make_unique<gl::ReadBackRing>("cache record counts", kWorkWords * sizeof(GLuint));
+
+  // Select the light that paths carry, and the programs of every transport.
+  scene_.fill(path_);
+  path_.minScatterings = light == Light::indirect ? 2 : 1;
+  path_.maxScatterings = light == Light::direct ? 1
+                         : settings.bounces == IrradianceCacheSettings::kAllBounces
+                             ? 0xffffu
+                             : static_cast<std::uint32_t>(settings.bounces) + 1;
+  path_.turns = capabilities.softwareRenderer ? kSoftwareTurns : kMostTurns;
+
+  const gl::ShaderFlags common = lookupFlags(settings);
+  const gl::ShaderFlags rays = rayFlags(lanes);
+  mark_ = &programs.loadCompute("cache mark records", "irradiance_cache/mark.comp", gl::with(common, {{"CLAIM", 0}}));
+  claim_ = &programs.loadCompute("cache claim records", "irradiance_cache/mark.comp", gl::with(common, {{"CLAIM", 1}}));
+  keep_ = &programs.loadCompute("cache keep records", "irradiance_cache/keep.comp", common);
+  list_ = &programs.loadCompute("cache list records", "irradiance_cache/list.comp", rays);
+  if (settings.transport == CacheTransport::rays)
+    paths_ = &programs.loadCompute("cache paths", "irradiance_cache/paths.comp",
+                                   gl::with(rays, {{"CACHED", cached_}, {"FROM_CELLS", 0}}));
+  if (settings.prefetch > 0)
+    prefetch_ = &programs.loadCompute("cache prefetch points", "irradiance_cache/prefetch.comp", rays);
+  store_ = &programs.loadCompute("cache store records", "irradiance_cache/store.comp", common);
+  if (settings.transport == CacheTransport::gather)
+    gather_ = std::make_unique<LightGather>(programs, capabilities, scene, origin, settings, light, scene_, common);
+  forget();
+}
+
+gl::ShaderFlags IrradianceCache::lookupFlags(const IrradianceCacheSettings& settings) {
+  return {{"GRID_FULL_FLOAT", settings.fullFloat}};
+}
+
+gl::ShaderFlags IrradianceCache::rayFlags(int lanes) const {
+  return gl::with(
+      gl::with(lookupFlags(settings_), scene_.flags()),
+      {{"LINEAR_SEEDS", 0}, {"GLOSSY", 0}, {"SHARED_STACK", scene_.rays().sharedStack()}, {"PATHS", lanes}});
+}
+
+void IrradianceCache::forget() {
+  slotTable_.clear();
+  seen_.clear();
+  for (gl::Buffer& buffer : work_) buffer.upload(0, kWorkWords * sizeof(GLuint), noWork().data());
+  const std::array<const gl::Texture*, 1> textures{&irradiance_};
+  gl::clearToZero(textures, clearTexture_);
+  cascades_.clear();
+  counts_ = {};
+  if (gather_) gather_->forget();
+}
+
+void IrradianceCache::place(const Inputs& inputs) {
+  const shared::CascadeConstants grids =
+      cascadeConstants(settings_.cascades, inputs.cascades, settings_.blendBand, referenceIrradiance_);
+  std::swap(cascadeConstants_, cascadeConstantsBefore_);
+  cascadeConstants_.upload(0, sizeof grids, &grids);
+  if (cascades_.empty()) cascadeConstantsBefore_.upload(0, sizeof grids, &grids);
+  shared::CacheConstants constants{};
+  for (std::size_t k = 0; k < inputs.cascades.size(); ++k)
+    constants.firstCell[k] = glm::ivec4(glm::ivec3(inputs.cascades[k].firstCell), 0);
+  constants.rayOrigin = glm::vec3(rayOrigin_);
+  constants.frame = ++frame_;
+  constants.capacity = static_cast<std::uint32_t>(capacity_);
+  constants.mostSegments =
+      std::min(path_.maxScatterings,
+               settings_.bounces == IrradianceCacheSettings::kAllBounces ? kSegmentsOfAll : path_.maxScatterings);
+  const glm::ivec2 size = inputs.visible.size();
+  const std::size_t pixels = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
+  constants.prefetch = inputs.fades ? static_cast<std::uint32_t>(settings_.prefetch) : 0;
+  constants.markEvery = static_cast<std::uint32_t>(pixels / (kKeyPixels - constants.prefetch) + 1);
+  constants_.upload(0, sizeof constants, &constants);
+
+  const Camera& camera = inputs.camera;
+  const glm::dvec3 right = glm::normalize(glm::cross(camera.direction, camera.up)),
+                   up = glm::cross(right, camera.direction);
+  const double pixel = 2.0 * std::tan(0.5 * camera.verticalFov) / size.y;
+  path_.cameraPosition = glm::vec3(camera.position - rayOrigin_);
+  path_.pixelRight = glm::vec3(pixel * right);
+  path_.pixelUp = glm::vec3(pixel * up);
+  path_.firstPixel = glm::vec3(camera.direction - 0.5 * size.x * pixel * right - 0.5 * size.y * pixel * up);
+  path_.picture = glm::ivec4(size, 0, 0);
+  pathConstants_.upload(0, sizeof path_, &path_);
+}
+
+void IrradianceCache::bindRecords() const {
+  cascadeConstants_.bindUniform(BLOCK_CASCADES);
+  constants_.bindUniform(BLOCK_CACHE);
+  pathConstants_.bindUniform(BLOCK_CACHE_PATHS);
+  records_[0].bindStorage(kRecordsBuffer);
+  work_[0].bindStorage(kWorkBuffer);
+}
+
+// After the grids have moved, copies records that are still inside to a new list and enters them in the slots.
+void IrradianceCache::keep() {
+  std::swap(records_[0], records_[1]);
+  std::swap(work_[0], work_[1]);
+  work_[0].upload(0, kWorkWords * sizeof(GLuint), noWork().data());
+  slotTable_.clear();
+  const gl::ComputePass pass("cache keep records", gl::Barrier::storage | gl::Barrier::textureFetch);
+  keep_->use();
+  bindRecords();
+  records_[1].bindStorage(kRecordsBuffer);
+  records_[0].bindStorage(kKeptBuffer);
+  slotTable_.buffer().bindStorage(kSlotsBuffer);
+  work_[1].bindStorage(kWorkBeforeBuffer);
+  pass.dispatchIndirect(work_[1]);
+}
+
+// Finds the prefetch points, unless they are those of the frame before.
+void IrradianceCache::findPrefetchPoints() {
+  if (!prefetch_ || prefetchedFrom_ == path_.cameraPosition) return;
+  const gl::ComputePass pass("cache prefetch points", gl::Barrier::storage);
+  prefetch_->use();
+  bindRecords();
+  scene_.bind();
+  prefetchPoints_.bindStorage(kRecordsBuffer);
+  pass.dispatch(glm::ivec3(settings_.prefetch, 1, 1), glm::ivec3(64, 1, 1));
+  prefetchedFrom_ = path_.cameraPosition;
+}
+
+void IrradianceCache::mark(const Inputs& inputs) {
+  if (inputs.fades) findPrefetchPoints();
+  keys_.buffer().clear(0xffffffffu);
+  const glm::ivec2 picture = inputs.visible.size();
+  const int rowsOfPrefetch = inputs.fades ? (settings_.prefetch + picture.x - 1) / picture.x : 0;
+  const glm::ivec3 size(picture.x, picture.y + rowsOfPrefetch, 1), group(8, 8, 1);
+  {
+    const gl::ComputePass pass("cache mark records", gl::Barrier::storage | gl::Barrier::textureFetch);
+    mark_->use();
+    bindRecords();
+    inputs.visible.bind(*mark_, inputs.worldFromClip);
+    slotTable_.bind(kSlotsUnit);
+    seen_.buffer().bindStorage(kRecordsBuffer);
+    keys_.buffer().bindStorage(kSlotsBuffer);
+    prefetchPoints_.bindStorage(kPrefetchBuffer);
+    pass.dispatch(size, group);
+  }
+  const gl::ComputePass pass("cache claim records",
+                             gl::Barrier::storage | gl::Barrier::textureFetch | gl::Barrier::command);
+  claim_->use();
+  bindRecords();
+  inputs.visible.bind(*claim_, inputs.worldFromClip);
+  slotTable_.bind(kSlotsUnit);
+  keys_.bind(kKeysUnit);
+  slotTable_.buffer().bindStorage(kSlotsBuffer);
+  prefetchPoints_.bindStorage(kPrefetchBuffer);
+  pass.dispatch(size, group);
+}
+
+// Lists visible records with fewer paths than `target`.
+void IrradianceCache::list(int target, bool countsFading) {
+  std::array<GLuint, kWorkWords> none = noWork();
+  none[kFrame] = frame_;
+  work_[0].upload(kWaiting * sizeof(GLuint), (kWorkWords - kWaiting) * sizeof(GLuint), &none[kWaiting]);
+  bindRecords();
+  cascadeConstantsBefore_.bindUniform(BLOCK_CASCADES);  // new records look up the light shown in their place before
+  irradiance_.bind(UNIT_CACHE);
+  scene_.bind();
+  lit_.bindStorage(kSlotsBuffer);
+  const gl::ComputePass pass("cache list records", gl::Barrier::storage | gl::Barrier::command);
+  list_->use();
+  list_->set("mostLit", static_cast<unsigned>(lit_.bytes() / sizeof(GLuint)));
+  list_->set("pathTarget", static_cast<unsigned>(target));
+  list_->set("countsFading", countsFading ? 1 : 0);
+  slotTable_.bind(kSlotsUnit);
+  seen_.bind(kSeenUnit);
+  pass.dispatchIndirect(work_[0]);
+  cascadeConstants_.bindUniform(BLOCK_CASCADES);
+}
+
+std::array<GLuint, IrradianceCache::kWorkWords> IrradianceCache::noWork() {
+  std::array<GLuint, kWorkWords> words{0, 1, 1};
+  for (std::size_t part = kLitGroups; part < kWorkWords; part += 3) words[part + 1] = words[part + 2] = 1;
+  return words;
+}
+
+void IrradianceCache::dispatchListed(const gl::ComputePass& pass, const gl::Program& program, const gl::Buffer& work) {
+  for (unsigned part = 0; part < CACHE_PARTS; ++part) {
+    program.set("firstGroup", part * CACHE_PART_GROUPS);
+    pass.dispatchIndirect(work, (kLitGroups + 3 * part) * sizeof(GLuint));
+  }
+}
+
+void IrradianceCache::light(int target) {
+  list(target);
+  const gl::ComputePass pass("cache paths", gl::Barrier::storage);
+  paths_->use();
+  irradiance_.bind(UNIT_CACHE);
+  gl::Submission::add(mostTurns());
+  dispatchListed(pass, *paths_, work_[0]);
+}
+
+// New records gather all their light; then they are final while the maps stay.
+void IrradianceCache::gather(const Inputs& inputs) {
+  bindRecords();
+  gather_->update(inputs.maps, inputs.mapsAreNew);
+  list(1);
+  gather_->gather(inputs.maps, work_[0], kLitGroups * sizeof(GLuint), lit_.bytes() / sizeof(GLuint));
+}
+
+void IrradianceCache::store(float mostChange) {
+  const std::array<const gl::Texture*, 1> textures{&irradiance_};
+  gl::clearToZero(textures, clearTexture_);
+  const gl::ComputePass pass("cache store records", gl::Barrier::storage | gl::Barrier::textureFetch,
+                             gl::Barrier::image);
+  store_->use();
+  store_->set("enoughPaths", static_cast<unsigned>(std::min(settings_.samples, settings_.leastRays)));
+  store_->set("mostChange", mostChange);
+  bindRecords();
+  slotTable_.bind(kSlotsUnit);
+  irradiance_.bindImage(0, gl::Access::write);
+  pass.dispatchIndirect(work_[0]);
+}
+
+void IrradianceCache::update(const Inputs& inputs, int rounds) {
+  const bool moved = !cascades_.empty() &&
+                     !std::equal(cascades_.begin(), cascades_.end(), inputs.cascades.begin(), inputs.cascades.end(),
+                                 [](const Cascade& a, const Cascade& b) { return a.firstCell == b.firstCell; });
+  const bool cut = cascades_.empty() || isCut(cascades_.front(), inputs.cascades.front());
+  const float mostChange = inputs.fades && !cut ? settings_.mostChange : 0.0f;
+  place(inputs);
+  cascades_ = inputs.cascades;
+  if (moved) keep();
+  mark(inputs);
+  if (settings_.transport == CacheTransport::gather) {
+    gather(inputs);
+    store(mostChange);
+    list(1, true);
+    ring_->copy(work_[0]);
+    return;
+  }
+  for (int round = 0; round < rounds; ++round) {
+    if (cached_ && round > 0) store(mostChange);
+    light(settings_.samples);
+  }
+  for (int paths = rounds * settings_.rays; paths < std::min(settings_.leastRays, settings_.samples);
+       paths += settings_.rays)
+    light(settings_.leastRays);
+  store(mostChange);
+  list(settings_.samples, true);  // the remaining work
+  ring_->copy(work_[0]);
+}
+
+void IrradianceCache::bindForLookup() const {
+  cascadeConstants_.bindUniform(BLOCK_CASCADES);
+  constants_.bindUniform(BLOCK_CACHE);
+  irradiance_.bind(UNIT_CACHE);
+}
+
+std::vector<AskedPart> IrradianceCache::ask(const glm::vec3& position, const glm::vec3& normal) const {
+  const AskedParts parts(24 * MAX_CASCADES);
+  {
+    const gl::Program& program =
+        programs_->loadCompute("cache ask records", "irradiance_cache/ask.comp", lookupFlags(settings_));
+    const gl::ComputePass pass("cache ask records");
+    program.use();
+    bindRecords();
+    bindForLookup();
+    slotTable_.bind(kSlotsUnit);
+    program.set("askedPosition", position);
+    program.set("askedNormal", normal);
+    parts.bind();
+    pass.dispatch(glm::ivec3(1), glm::ivec3(1));
+  }
+  return parts.read();
+}
+
+std::vector<IrradianceCache::Shown> IrradianceCache::shown() const {
+  const std::size_t count = std::min<std::size_t>(work_[0].read<GLuint>()[kWanted], capacity_);
+  std::vector<Shown> result;
+  if (count == 0) return result;
+  for (const shared::CacheRecord& r : records_[0].read<shared::CacheRecord>(count)) {
+    if (r.triangle == CACHE_UNPLACED || r.triangle == CACHE_NOWHERE || r.paths == 0) continue;
+    result.push_back({r.position, r.normal, r.shown, r.blendWeight, glm::ivec3(r.cell), r.cell.w / CACHE_FACES,
+                      r.cell.w % CACHE_FACES});
+  }
+  return result;
+}
+
+void IrradianceCache::collect(bool wait) {
+  for (std::vector<GLuint> words = ring_->fetch(wait); !words.empty(); words = ring_->fetch(wait)) {
+    counts_.records = std::min<std::uint64_t>(words[kWanted], capacity_);
+    counts_.left = words[kWanted] - counts_.records;
+    counts_.waiting = words[kWaiting];
+    counts_.frame = words[kFrame];
+  }
+}
+
+std::size_t IrradianceCache::mostFrames() const {
+  const std::size_t lit = lit_.bytes() / sizeof(GLuint), lists = (capacity_ + lit - 1) / lit;
+  const auto paths = static_cast<std::size_t>(settings_.rays);
+  const std::size_t each = settings_.transport == CacheTransport::gather
+                               ? 1
+                               : (static_cast<std::size_t>(settings_.samples) + paths - 1) / paths;
+  return (lists + 1) * each + 1;
+}
+
+double IrradianceCache::mostTurns() const {
+  if (gather_) return gather_->mostTurns();
+  return static_cast<double>(lit_.bytes() / sizeof(GLuint)) * settings_.rays * kTurnsOfPath;
+}
+
+std::size_t IrradianceCache::gpuBytes() const {
+  std::size_t bytes = scene_.gpuBytes() + cascadeConstants_.bytes() + cascadeConstantsBefore_.bytes() +
+                      constants_.bytes() + pathConstants_.bytes() + lit_.bytes() + slotTable_.bytes() + keys_.bytes() +
+                      seen_.bytes() + irradiance_.bytes() + prefetchPoints_.bytes() + ring_->bytes() +
+                      (gather_ ? gather_->gpuBytes() : 0);
+  for (std::size_t i = 0; i < 2; ++i) bytes += records_[i].bytes() + work_[i].bytes();
+  return bytes;
+}
+
+}  // namespace lucerna

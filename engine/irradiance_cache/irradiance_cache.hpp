@@ -1,0 +1,156 @@
+// Records: irradiance stored at surface points, in the cascades of the light propagation volume, gathered from the
+// lights' maps or found by paths.
+//
+// Irradiance along a surface is smooth even in a corner, where a field of radiance in space is not; so surface points
+// are interpolated. Each cell of each cascade has six slots, one per axis and sign; a slot holds one real point that
+// the camera has seen, or in the coarsest cascades would see if it turned, and whose normal points that way. Points are
+// kept while the camera moves, and their paths accumulate while light and geometry are static.
+//
+// In: a scene (PathScene), cascades, the visible surfaces, the lights' maps for gather. Out: a layered 3D texture that
+// shaders/irradiance_cache/lookup.glsl interpolates: irradiance in W per square scene unit. Light: emissive surfaces,
+// the sky, and everything scattered `bounces` times; forward shading adds the direct light of sun and lamps. Errors:
+// Error(missingCapability) if a texture or buffer exceeds the driver's limits. Source: README.md in this folder,
+// section "Records".
+#pragma once
+
+#include "base/image.hpp"
+#include "forward/visible_surfaces.hpp"
+#include "gl/context.hpp"
+#include "gl/pass.hpp"
+#include "gl/program.hpp"
+#include "forward/asked_pixel.hpp"
+#include "gl/read_back.hpp"
+#include "cascades/cascades.hpp"
+#include "irradiance_cache/light_gather.hpp"
+#include "rays/path_scene.hpp"
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace lucerna {
+
+class IrradianceCache {
+ public:
+  using Light = CachedLight;
+  struct Inputs {
+    std::vector<Cascade> cascades;  ///< of placeCascadesAround
+    Camera camera;  ///< of the visible surfaces, in the frame's coordinates
+    glm::mat4 worldFromClip;  ///< the same
+    const VisibleSurfaces& visible;
+    /// For CacheTransport::gather, one per light; the same ones every frame. Read if `mapsAreNew`, and by new records.
+    const std::vector<ReflectiveShadowMap::Outputs>& maps;
+    bool mapsAreNew;
+    bool fades;  ///< limit changes of the shown irradiance to Settings::mostChange; otherwise they apply at once
+  };
+  /// Counts of the last frame whose counts have arrived.
+  struct Counts {
+    std::uint64_t records = 0;  ///< in total
+    std::uint64_t waiting = 0;  ///< visible ones that still lack paths
+    std::uint64_t left = 0;  ///< records that did not fit
+    std::uint32_t frame = 0;  ///< as frame() counts them
+  };
+
+  /// `scene`: as loaded. `origin`: of the frame's positions, in the scene's coordinates.
+  IrradianceCache(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, const Scene& scene,
+                  const glm::dvec3& origin, const IrradianceCacheSettings& settings, Light light);
+
+  static bool isNeeded(const SceneNeeds& needs, const IrradianceCacheSettings& settings, Light light);
+
+  /// One frame: finds records for visible surfaces, and traces Settings::rays paths for those that lack some,
+  /// Settings::leastRays for new ones. rounds: the paths of this many frames at once.
+  void update(const Inputs& inputs, int rounds = 1);
+  /// Drops everything stored, as before the first frame.
+  void forget();
+
+  /// Binds blocks 1 and 6 and unit 5 for shaders/irradiance_cache/lookup.glsl.
+  void bindForLookup() const;
+  static gl::ShaderFlags lookupFlags(const IrradianceCacheSettings& settings);
+
+  /// The contribution of each record to the lookup at a point in the frame's coordinates, with the mesh's normal.
+  /// Compiles and allocates.
+  std::vector<AskedPart> ask(const glm::vec3& position, const glm::vec3& normal) const;
+
+  /// A record as it is looked up.
+  struct Shown {
+    glm::vec3 position, normal;  ///< among the frame's positions; unit, on the side that is seen
+    glm::vec3 irradiance;  ///< W per square scene unit
+    float blendWeight;  ///< its weight, 0 to 1: a new one fades in
+    glm::ivec3 cell;  ///< of its cascade, counted from the origin
+    int cascade, face;
+  };
+  /// Those that have found light or darkness, as of the last update. Reads back: waits for the GPU.
+  std::vector<Shown> shown() const;
+
+  // Floors: what light would be shown without a part of what a technique does (README.md, "Whose error it is"). For
+  // the surfaces that the pixels of the last update's view show; W per square scene unit, 0 where there is none. They
+  // compile, allocate, and wait for the GPU.
+  /// As CacheTransport::gather finds it, at each pixel instead of in cells.
+  Image gatheredAtPixels(const std::vector<ReflectiveShadowMap::Outputs>& maps) const;
+  /// From the exact radiance in the middle of the cells around, as a light propagation volume reads it: two bands of
+  /// spherical harmonics, trilinear. cascades: of such a volume; paths: per pixel, rounded up to CACHE_LANES.
+  Image readFromCells(const CascadeSettings& settings, const std::vector<Cascade>& cascades, float blendBand,
+                      int paths) const;
+
+  void collect(bool wait = false);
+  const Counts& counts() const { return counts_; }
+  const IrradianceCacheSettings& settings() const { return settings_; }
+  std::uint32_t frame() const { return frame_; }  ///< the last update's number
+  const gl::Texture& irradiance() const { return irradiance_; }
+  /// Of a submission, at most: the list of records that it works on ends there (gl/pieces.hpp).
+  double mostTurns() const;
+  /// Frames after which no record of a view that stands still lacks paths, at the latest.
+  std::size_t mostFrames() const;
+  std::size_t gpuBytes() const;
+
+ private:
+  static constexpr GLuint kRecordsBuffer = 0, kWorkBuffer = 5;  // GL_SHADER_STORAGE_BUFFER
+  static constexpr double kTurnsOfPath = 256.0;  ///< of a lane, approximately (gl/pieces.hpp)
+  // Words of shaders/irradiance_cache/work.glsl.
+  static constexpr std::size_t kWanted = 3, kWaiting = 4, kFrame = 5, kLitGroups = 6, kWorkWords = 36;
+  static std::array<GLuint, kWorkWords> noWork();  ///< groups of all dispatches: 0 by 1 by 1
+
+  void place(const Inputs& inputs);
+  void keep();
+  void findPrefetchPoints();
+  void mark(const Inputs& inputs);
+  void list(int target, bool countsFading = false);
+  void light(int target);
+  void gather(const Inputs& inputs);
+  void store(float mostChange);
+  void bindRecords() const;
+  gl::ShaderFlags rayFlags(int lanes) const;
+  /// Dispatches a program over the listed records, part after part.
+  static void dispatchListed(const gl::ComputePass& pass, const gl::Program& program, const gl::Buffer& work);
+  Image atPixels(int rounds, const std::function<void(const gl::Buffer& work)>& light) const;
+
+  IrradianceCacheSettings settings_;
+  gl::ProgramLibrary* programs_;
+  PathScene scene_;
+  glm::dvec3 rayOrigin_;  ///< in the frame's coordinates
+  float referenceIrradiance_;  ///< of the order of the irradiance; only scales stored values
+  bool clearTexture_;
+  bool cached_;  ///< paths end at records
+  std::size_t slots_, capacity_;
+  std::uint32_t frame_ = 0;
+  std::vector<Cascade> cascades_;  ///< of the previous frame
+  shared::PathConstants path_{};
+  const gl::Program *mark_, *claim_, *keep_, *list_, *store_;
+  const gl::Program* paths_ = nullptr;  ///< only for rays
+  const gl::Program* prefetch_ = nullptr;  ///< only if Settings::prefetch
+  std::optional<glm::vec3> prefetchedFrom_;  ///< position of the camera in the ray caster's coordinates
+  std::unique_ptr<LightGather> gather_;  ///< only for gather
+  gl::Buffer cascadeConstants_,
+      cascadeConstantsBefore_;  ///< the second: the cascades to which irradiance_ belongs when an update begins
+  gl::Buffer constants_, pathConstants_, lit_, prefetchPoints_;
+  std::array<gl::Buffer, 2> records_, work_;  ///< the second of each: before the cascades moved
+  gl::BufferTexture slotTable_, keys_, seen_;
+  gl::Texture irradiance_;
+  std::unique_ptr<gl::ReadBackRing> ring_;
+  Counts counts_;
+};
+
+}  // namespace lucerna

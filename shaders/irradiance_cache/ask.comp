@@ -1,0 +1,50 @@
+// Lists what the lookup reads from each record for one point: one entry per record. One invocation.
+layout(local_size_x = 1) in;
+#include "lib/clamped_int.glsl"
+#include "irradiance_cache/lookup.glsl"
+#include "forward/asked_parts.glsl"
+layout(binding = 7) uniform usamplerBuffer cacheSlots;
+layout(std430, binding = 0) readonly buffer CacheRecords { CacheRecord records[]; };
+uniform vec3 askedPosition;
+uniform vec3 askedNormal;  // of the mesh
+
+
+// The cascades' weights, and the sum that normalises them.
+float weightsOfCascades(out float weights[MAX_CASCADES], out float there[MAX_CASCADES]) {
+  float left = 1.0, sum = 0.0;
+  for (int k = 0; k < MAX_CASCADES; ++k) {
+    weights[k] = there[k] = 0.0;
+    if (k >= grids.shape.y || !(left > 0.0)) continue;
+    float weight = left * cacheCascadeWeight(k, askedPosition);
+    if (!(weight > 0.0)) continue;
+    there[k] = cachedInCascade(k, askedPosition, askedNormal).w;
+    if (!(there[k] > kLeast)) continue;
+    weights[k] = weight * min(there[k] / kEnough, 1.0);
+    sum += weights[k];
+    left -= weights[k];
+  }
+  return sum;
+}
+
+void main() {
+  int cells = grids.shape.x;
+  float weights[MAX_CASCADES], there[MAX_CASCADES], sum = weightsOfCascades(weights, there);
+  for (int k = 0; k < grids.shape.y; ++k) {
+    if (!(weights[k] > 0.0)) continue;
+    vec3 place = cachePlace(k, askedPosition) - 0.5;
+    for (int i = 0; i < 24; ++i) {
+      int axis = i >> 3, face = faceOf(axis, askedNormal[axis]);
+      ivec3 corner = ivec3(i & 1, i >> 1 & 1, i >> 2 & 1),
+            cell = clampedInt(floor(place), ivec3(-2), ivec3(cells)) + corner;
+      vec3 near = mix(1.0 - fract(place), fract(place), vec3(corner));
+      float share = askedNormal[axis] * askedNormal[axis] * near.x * near.y * near.z * weights[k] / (there[k] * sum);
+      if (!(share > 0.0) || any(lessThan(cell, ivec3(0))) || any(greaterThanEqual(cell, ivec3(cells)))) continue;
+      vec4 held = texelFetch(cacheTexture, cell + ivec3(0, 0, (k * CACHE_FACES + face) * cells), 0);
+      uint slot = texelFetch(cacheSlots, slotOf(k, face, cell + cache.firstCell[k].xyz)).x;
+      if (!(held.w > 0.0) || slot == 0u || slot > cache.capacity) continue;
+      tellPart(AskedPart(share * cacheUnit() * held.rgb, share * held.w, records[slot - 1u].position,
+                         0.0, ivec4(cell, k), vec4(0.0), vec4(0.0), vec4(0.0)));
+    }
+  }
+  endParts();
+}

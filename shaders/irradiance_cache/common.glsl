@@ -1,0 +1,21 @@
+// Records: each cell of each cascade has six slots, one per axis and sign. A slot holds one actual point of a surface
+// that faces that way. Slots are addressed by the cell's index from the origin, modulo the cascade's cells, so that a
+// record keeps its slot while the grid moves.
+#include "shared/bindings.h"
+#include "cascades/block.glsl"
+#include "shared/irradiance_cache.h"
+layout(std140, binding = BLOCK_CACHE) uniform CacheBlock { CacheConstants cache; };
+
+// Unit of the irradiance in the texture: small, since it is stored times a weight that begins at 1 / 8000 (store.comp).
+float cacheUnit() { return grids.referenceIrradiance / 16.0; }
+
+int faceOf(int axis, float component) { return 2 * axis + (component < 0.0 ? 1 : 0); }
+
+// cell: index counted from the origin.
+int slotOf(int cascade, int face, ivec3 cell) {
+  int cells = grids.shape.x;
+  ivec3 place = cell - cells * ivec3(floor(vec3(cell) / float(cells)));  // bounded: by the integer that is divided
+  place -= cells * ivec3(greaterThanEqual(place, ivec3(cells)));
+  place += cells * ivec3(lessThan(place, ivec3(0)));
+  return ((((cascade * CACHE_FACES + face) * cells) + place.z) * cells + place.y) * cells + place.x;
+}

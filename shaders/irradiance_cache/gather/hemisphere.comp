@@ -1,0 +1,180 @@
+// What surrounds a record: RAYS cosine-distributed rays of each lane through the scene's hierarchy. Each brings, over
+// the number of rays,
+//   pi L of the sky where it meets nothing;
+//   pi L of an emissive surface, weighted as in gather.comp (SHARED_WITH_RAYS), which finds the rest;
+//   albedo E of any surface, E being the irradiance kept at the bounces' point near the hit.
+// The rays' shares add up to 1 at most, so light that bounces on and on never grows.
+// OWN: sky and emissive surfaces count. BOUNCED: surfaces do. LINKS: the records are the bounces' points themselves;
+// a surface's point and albedo are noted for bounce.comp, and what was stored is replaced. RAYS is then 1.
+// `probes`, LINKS: only tells which points lie in a gap, as between a ceiling and the lamp on it, or within a solid, as
+// the floor below a column, and stand for no other part of their cell. No surface finds them any more.
+layout(local_size_x = 64) in;  // CACHE_LANES
+#include "lib/clamped_int.glsl"
+#include "shared/bindings.h"
+#include "shared/path_tracer.h"
+layout(std140, binding = BLOCK_CACHE_PATHS) uniform PathBlock { PathConstants tracer; };
+#include "rays/random.glsl"
+#include "rays/bsdf.glsl"
+#include "rays/materials.glsl"
+#include "rays/bvh.glsl"
+#include "rays/environment.glsl"
+#include "irradiance_cache/common.glsl"
+#include "irradiance_cache/surface.glsl"
+// unordered CacheRecords: each dispatch changes the records of its own part of the list
+layout(std430, binding = 0) restrict buffer CacheRecords { CacheRecord records[]; };
+layout(std430, binding = 1) readonly restrict buffer CacheLit { uint lit[]; };
+uniform uint last;              // 1: after this dispatch records have all their light
+uniform uint firstGroup;       // of `lit`
+uniform float areaOverDensity;  // of emissive surfaces: area that a point stands for, times the triangle's pickDensity
+shared vec3 found[CACHE_LANES];
+#if LINKS
+shared uint met[CACHE_LANES];  // 1: the lane's ray met a surface; 2: right in front of it, or a back face near by
+uniform bool probes;
+const float kGap = 0.1, kNear = 1.0;  // cells
+const uint kMostShut = 48u;           // rays that may end there
+#endif
+
+#if BOUNCED
+uniform vec3 bounceMinimum;  // of cell 0, in the ray caster's coordinates
+uniform float bounceCell;    // scene units
+uniform ivec3 bounceCells;
+layout(binding = 8) uniform usamplerBuffer bounceSlots;  // per face and cell: number of its first point + 1, 0: none
+layout(binding = 13) uniform samplerBuffer bouncePlaces;  // of points; w: bits of the next layer's number + 1
+const float kApart = 0.25;  // cells along the normal, at most, from a surface to its point
+#if LINKS
+// unordered BounceLinks: each dispatch writes those of its own points
+layout(std430, binding = 6) writeonly restrict buffer BounceLinks { uint links[]; };
+// unordered BouncePlaces: likewise
+// aliased BouncePlaces: with `probes` an invocation changes its own place and reads no other; without, none writes
+layout(std430, binding = 7) restrict buffer BouncePlaces { vec4 places[]; };
+#else
+layout(binding = 9) uniform samplerBuffer bouncedLight;
+#endif
+
+// The point of a cell's slot in whose plane a surface lies. 0: none.
+uint pointOf(int face, ivec3 cell, vec3 position, vec3 normal) {
+  if (any(lessThan(cell, ivec3(0))) || any(greaterThanEqual(cell, bounceCells))) return 0u;
+  uint point = texelFetch(bounceSlots,
+                          ((face * bounceCells.z + cell.z) * bounceCells.y + cell.y) * bounceCells.x + cell.x).x;
+  uint nearest = 0u;
+  float least = kApart * bounceCell;
+  for (int layer = 0; layer < 4 && point != 0u; ++layer) {
+    vec4 place = texelFetch(bouncePlaces, int(point) - 1);
+    float apart = abs(dot(normal, place.xyz - position));
+    if (apart < least) {
+      least = apart;
+      nearest = point;
+    }
+    point = floatBitsToUint(place.w);
+  }
+  return nearest;
+}
+
+// A point near a surface's, drawn as often as a trilinear lookup among those of the faces that the normal leans to
+// would weigh it. 0: none.
+uint pointNear(vec3 position, vec3 normal, vec4 xi) {
+  vec3 lean = normal * normal, inCells = (position - bounceMinimum) / bounceCell;
+  int axis = xi.w < lean.x ? 0 : xi.w < lean.x + lean.y ? 1 : 2;
+  int face = faceOf(axis, normal[axis]);
+  ivec3 own = clampedInt(floor(inCells), ivec3(-2), bounceCells + 1);  // more than a cell outside remains outside
+  uint point = pointOf(face, clampedInt(floor(inCells + xi.xyz - 0.5), ivec3(-2), bounceCells + 1), position, normal);
+  if (point == 0u) point = pointOf(face, own, position, normal);
+  if (point != 0u) return point;
+  // The surface was entered for the axis that it leans to most, maybe on the other side of a cell's border. Or its own
+  // point lies in a gap: then a neighbour stands for it.
+  axis = lean.x > max(lean.y, lean.z) ? 0 : lean.y > lean.z ? 1 : 2;
+  face = faceOf(axis, normal[axis]);
+  point = pointOf(face, own, position, normal);
+  for (int i = 0; i < 6 && point == 0u; ++i) {
+    ivec3 step = ivec3(0);
+    step[(axis + i / 2) % 3] = 1 - 2 * (i & 1);
+    point = pointOf(face, own + step, position, normal);
+  }
+  return point;
+}
+#endif
+
+#if EMISSION && OWN
+// Radiance of an emissive surface, as far as rays count for it.
+vec3 emissionNear(Surface at, Hit hit, float cosine, vec3 direction) {
+  vec3 emission = emissionAt(at.material, hit.triangle, hit.barycentrics);
+  float density = pickDensity(hit.triangle);
+  if (!(density > 0.0)) return vec3(0.0);
+  float ofRays = float(CACHE_LANES * RAYS) * (areaOverDensity / density) * cosine * -dot(at.geometricNormal, direction);
+  return emission * (ofRays / (kPi * hit.t * hit.t + ofRays));
+}
+#endif
+
+vec3 lookAround(CacheRecord record, uint index, uint ray) {
+  Surface surface = surfaceOf(record);
+  PathNumbers numbers = PathNumbers(pcg4d(uvec4(record.cell)).x, ray, tracer.seed);
+  vec3 direction = cosineSample(surface.normal, randomPair(numbers, 1u, kPurposeScatter)), sum = vec3(0.0);
+#if LINKS
+  uint link = 3u * (index * uint(CACHE_LANES) + ray);
+  links[link] = 0u;
+  met[ray] = 0u;
+#endif
+  if (!(dot(direction, surface.geometricNormal) > 0.0)) return sum;
+  Hit hit = closestHit(
+      Ray(offsetRay(surface.position, surface.geometricNormal, surface.magnitude), 0.0, direction, 3e38),
+      record.triangle);
+  if (hit.triangle == kNoHit) {
+#if ENVIRONMENT && OWN
+    sum = kPi * environmentRadiance(direction);
+#endif
+    return sum;
+  }
+  Surface at = surfaceAt(hit.triangle, hit.barycentrics, direction);
+#if EMISSION && OWN
+  sum += kPi * emissionNear(at, hit, dot(direction, surface.normal), direction);
+#endif
+#if BOUNCED
+  uint point = pointNear(at.position, at.normal, vec4(unitFloat(randomWords(numbers, 1u, kPurposePick).xy),
+                                                      unitFloat(randomWords(numbers, 1u, kPurposeChoice).xy)));
+  vec3 albedo = min(albedoAt(at), vec3(1.0));
+#if LINKS
+  // Rounded down: no surface reflects more than it does.
+  uvec3 steps = uvec3(clampedInt(floor(albedo * 65535.0), ivec3(0), ivec3(65535)));
+  links[link] = point;
+  bool inside = dot(normalOf(hit.triangle), direction) > 0.0 && hit.t < kNear * bounceCell;
+  met[ray] = inside || hit.t < kGap * bounceCell ? 2u : 1u;
+  links[link + 1u] = steps.x | steps.y << 16u;
+  links[link + 2u] = steps.z;
+#else
+  if (point != 0u) sum += albedo * texelFetch(bouncedLight, int(point) - 1).rgb;
+#endif
+#endif
+  return sum;
+}
+
+void main() {
+  uint lane = gl_LocalInvocationID.x, place = firstGroup + gl_WorkGroupID.x;
+  if (place >= uint(lit.length())) return;
+  uint index = lit[place];
+  if (index >= uint(records.length())) return;
+  CacheRecord record = records[index];
+  vec3 own = vec3(0.0);
+  for (int i = 0; i < RAYS; ++i) own += lookAround(record, index, lane + uint(i * CACHE_LANES));
+  found[lane] = own;
+  barrier();
+  if (lane != 0u) return;
+  // Groups lie in one row. A compiler that knew the number of lanes would load all of `found` into registers at once.
+  int lanes = min(CACHE_LANES * int(gl_NumWorkGroups.y), CACHE_LANES);
+  vec3 sum = vec3(0.0);
+  for (int i = 0; i < lanes; ++i) sum += found[i];  // ends: at most CACHE_LANES
+  sum /= float(CACHE_LANES * RAYS);
+#if LINKS
+  uint surfaces = 0u, near = 0u;
+  for (int i = 0; i < lanes; ++i) {  // ends: at most CACHE_LANES
+    surfaces += min(met[i], 1u);
+    near += met[i] / 2u;
+  }
+  if (probes && near > kMostShut)  // out of every surface's plane
+    places[index].xyz += 1e6 * bounceCell * record.normal;
+  if (surfaces == 0u || (probes && near > kMostShut)) records[index].state = record.state | CACHE_ALONE;
+#else
+  sum += record.irradiance;
+#endif
+  records[index].irradiance = sum;
+  if (last != 0u) records[index].paths = CACHE_GATHERED;
+}

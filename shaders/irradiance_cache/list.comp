@@ -1,0 +1,73 @@
+// Visits every record once per frame. A new one is placed where its pixel's ray meets the scene, in the ray caster's
+// coordinates, so that no path starts inside a surface. Needed records that do not have all their paths yet are
+// listed. A new one first shows the irradiance looked up at its place in the previous frame.
+layout(local_size_x = 64) in;
+#include "shared/bindings.h"
+#include "shared/path_tracer.h"
+layout(std140, binding = BLOCK_CACHE_PATHS) uniform PathBlock { PathConstants tracer; };
+#include "rays/random.glsl"
+#include "rays/bsdf.glsl"
+#include "rays/materials.glsl"
+#include "rays/bvh.glsl"
+#include "irradiance_cache/lookup.glsl"
+#include "irradiance_cache/work.glsl"
+layout(std430, binding = 5) restrict buffer CacheWorkBlock { CacheWork work; };
+#include "irradiance_cache/seen.glsl"
+layout(std430, binding = 0) restrict buffer CacheRecords { CacheRecord records[]; };
+layout(std430, binding = 1) writeonly restrict buffer CacheLit { uint lit[]; };
+layout(binding = 6) uniform usamplerBuffer cacheSeen;
+#include "irradiance_cache/neighbours.glsl"
+uniform uint mostLit;     // records
+uniform uint pathTarget;  // paths that each record should have
+uniform bool countsFading;  // also list records whose shown value is still fading in
+
+// Whether one of the neighbours that are shown is much darker. Those of this frame are not shown yet.
+bool isBrightBeside(ivec4 cell, vec3 light) {
+  const float kMuch = 4.0;
+  float most = largestOf(light) / kMuch;
+  bool isBright = false;
+  for (int i = 0; i < kNeighbours; ++i) {
+    uint other;
+    if (!neighbourAt(cell, i, other) || !(records[other].blendWeight > 0.0)) continue;
+    float shown = largestOf(records[other].shown);
+    isBright = isBright || (shown > 0.0 && shown <= most);
+  }
+  return isBright;
+}
+
+void main() {
+  uint index = gl_GlobalInvocationID.x;
+  if (index >= recordCount(work.wanted)) return;
+  uint triangle = records[index].triangle;
+  if (triangle == CACHE_UNPLACED) {
+    Hit hit;
+    Surface surface;
+    bool isThere = seenAt(int(records[index].pixel), hit, surface);
+    triangle = isThere ? hit.triangle : CACHE_NOWHERE;
+    records[index].triangle = triangle;
+    if (isThere) {
+      records[index].position = surface.position + cache.rayOrigin;
+      records[index].normal = surface.normal;
+      records[index].second = hit.barycentrics.x;
+      records[index].third = hit.barycentrics.y;
+      bool known;
+      vec3 before = cachedIrradiance(surface.position + cache.rayOrigin, surface.normal, known);
+      records[index].shown = before;
+      records[index].blendWeight = 0.0;
+      records[index].state = (surface.front ? CACHE_FRONT : 0u) | (known ? 0u : CACHE_FIRST) |
+                               (isBrightBeside(records[index].cell, before) ? CACHE_BRIGHT : 0u);
+    }
+  }
+  if (triangle == CACHE_NOWHERE) return;
+  // also if it is not needed itself, but is looked up next to needed ones; not without any path, as it shows nothing
+  uint paths = records[index].paths;
+  bool fades = countsFading && paths > 0u && records[index].blendWeight < fullBlendWeight(paths);
+  bool lacksPaths = paths < pathTarget &&
+                    (records[index].born == cache.frame || texelFetch(cacheSeen, int(index)).x == cache.frame);
+  if (!fades && !lacksPaths) return;
+  uint place = atomicAdd(work.waiting, 1u);
+  if (place >= mostLit) return;
+  uint group = place / uint(CACHE_LANES / PATHS);
+  atomicMax(work.litGroups[3u * (group / uint(CACHE_PART_GROUPS))], group % uint(CACHE_PART_GROUPS) + 1u);
+  lit[place] = index;
+}

@@ -1,0 +1,81 @@
+// Marks the slots that the camera needs. Each pixel names those of its cell, in every cascade that contributes there,
+// for each axis that its normal leans to. The prefetch points around the camera do so too, in the coarsest cascades;
+// they come after the picture's pixels. Slots with a record keep it. An empty slot goes to the pixel nearest to its
+// cell's centre and most aligned with its axis: an actual point, because the mean of several would lie buried in edges
+// and corners.
+// First pass: the best key of each empty slot. Second pass, CLAIM: the winner creates the record.
+layout(local_size_x = 8, local_size_y = 8) in;
+#include "lib/clamped_int.glsl"
+#include "irradiance_cache/common.glsl"
+#include "irradiance_cache/work.glsl"
+layout(std430, binding = 5) restrict buffer CacheWorkBlock { CacheWork work; };
+#include "irradiance_cache/cascade_weight.glsl"
+#include "forward/visible.glsl"
+layout(binding = 7) uniform usamplerBuffer cacheSlots;  // 0: empty, else the record's index + 1
+#if CLAIM
+layout(binding = 1) uniform usamplerBuffer cacheKeys;
+layout(std430, binding = 0) writeonly restrict buffer CacheRecords { CacheRecord records[]; };
+// aliased CacheSlots: only the winner of an empty slot changes it; all others skip the slot with either value
+layout(std430, binding = 1) writeonly restrict buffer CacheSlots { uint slots[]; };
+#else
+layout(std430, binding = 0) writeonly restrict buffer CacheSeen { uint seen[]; };
+layout(std430, binding = 1) restrict buffer CacheKeys { uint keys[]; };
+#endif
+layout(std430, binding = 2) readonly restrict buffer CachePrefetch { PrefetchPoint prefetched[]; };
+
+const float kLeans = 0.02;  // squared component of the normal from which the slot is filled
+const int kPrefetchCascades = 2;
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy), size = textureSize(visibleDepth, 0);
+  if (pixel.x >= size.x) return;
+  int number = pixel.y * size.x + pixel.x, beyond = number - size.x * size.y;
+  bool isPrefetch = beyond >= 0;
+  vec3 position, normal;
+  uint name;  // in a key
+  if (isPrefetch) {
+    if (beyond >= int(cache.prefetch) || prefetched[beyond].isThere == 0u) return;
+    position = prefetched[beyond].position;
+    normal = prefetched[beyond].normal;
+    name = uint(number - beyond - 1) / cache.markEvery + 1u + uint(beyond);
+  } else {
+    if (uint(number) % cache.markEvery != 0u || !isVisibleSurface(pixel)) return;
+    position = visiblePosition(pixel);
+    normal = visibleUnitNormal(pixel);
+    name = uint(number) / cache.markEvery;
+  }
+  float left = 1.0;
+  for (int k = isPrefetch ? max(grids.shape.y - kPrefetchCascades, 0) : 0; k < grids.shape.y && left > 0.0; ++k) {
+    float weight = left * cacheCascadeWeight(k, position);
+    if (!(weight > 0.0)) continue;
+    if (!isPrefetch) left -= weight;
+    vec3 inCells = (position - grids.cascades[k].minimum) / grids.cascades[k].cellSize;
+    ivec3 cell = clampedInt(floor(inCells), ivec3(-1), ivec3(grids.shape.x));
+    if (any(lessThan(cell, ivec3(0))) || any(greaterThanEqual(cell, ivec3(grids.shape.x)))) continue;
+    float offCentre = length(inCells - vec3(cell) - 0.5);
+    cell += cache.firstCell[k].xyz;
+    for (int axis = 0; axis < 3; ++axis) {
+      float lean = normal[axis] * normal[axis];
+      if (lean < kLeans) continue;
+      int face = faceOf(axis, normal[axis]);
+      int slot = slotOf(k, face, cell);
+      uint holds = texelFetch(cacheSlots, slot).x;
+      uint score = uint(clampedInt((offCentre + 0.5 * (1.0 - lean)) * (511.0 / 1.5), 0, 511));
+      uint key = score << 23u | name;
+#if CLAIM
+      if (holds != 0u || texelFetch(cacheKeys, slot).x != key) continue;
+      uint index = atomicAdd(work.wanted, 1u);
+      if (index >= cache.capacity) continue;
+      atomicMax(work.allGroupsX, index / uint(CACHE_LANES) + 1u);
+      records[index] = CacheRecord(ivec4(cell, k * CACHE_FACES + face), CACHE_UNPLACED, 0u, 0.0, 0.0, vec3(0.0), 0u,
+                                     position, cache.frame, normal, uint(number), vec3(0.0), 0.0);
+      slots[slot] = index + 1u;
+#else
+      if (holds == 0u)
+        atomicMin(keys[slot], key);
+      else if (!isPrefetch && holds <= uint(seen.length()))
+        seen[holds - 1u] = cache.frame;
+#endif
+    }
+  }
+}

@@ -1,0 +1,69 @@
+// Writes the texture that the lookup filters: each record's irradiance at its cell and face, times its weight. The
+// weight grows to what its number of paths is worth, slowly, so that new records fade in among others. A record
+// with few paths is averaged with its neighbours (same face, surfaces that lean the same way), weighted by their paths.
+// This trades noise for a little blur, and both vanish once the record has all its paths and stands for itself.
+layout(local_size_x = 64) in;
+#include "irradiance_cache/common.glsl"
+#include "irradiance_cache/work.glsl"
+layout(std430, binding = 5) readonly restrict buffer CacheWorkBlock { CacheWork work; };
+layout(std430, binding = 0) restrict buffer CacheRecords { CacheRecord records[]; };
+layout(GRID_FORMAT, binding = 0) writeonly uniform image3D cacheTexture;
+#include "irradiance_cache/neighbours.glsl"
+uniform uint enoughPaths;  // a CACHE_FIRST record follows its estimate without limit until it has this many
+// largest change per frame of the shown irradiance, relative to what it is or a quarter of its target; 0: no limit
+uniform float mostChange;
+// A new record's weight grows per frame by kGrowth of what it is and of what those beside it may have at least. What
+// it takes away from a much brighter one then darkens a surface by at most kGrowth per frame. It takes 522 frames. A
+// record that is much brighter than one beside it (CACHE_BRIGHT) starts with less, since it adds many times that.
+const float kGrowth = 0.008, kBeside = 1.0 / 64.0, kBesideDark = 1.0 / 128.0, kNearly = 127.0 / 128.0;
+
+// Avoids visible jumps: the irradiance that a record shows moves gradually towards the estimate from its own and its
+// neighbours' paths, and a new record fades in. Where nothing was shown before, it starts with the estimate of its
+// first frame.
+void show(uint index, inout CacheRecord record, vec3 target) {
+  vec3 change = target - record.shown;
+  float largest = max(max(abs(change.x), abs(change.y)), abs(change.z));
+  float scale = max(max(max(record.shown.x, record.shown.y), record.shown.z),
+                    0.25 * max(max(target.x, target.y), target.z));
+  scale = max(scale, 1e-3 * cacheUnit());  // otherwise it never reaches black
+  bool isFirst = (record.state & CACHE_FIRST) != 0u;
+  if (isFirst && record.paths >= enoughPaths) records[index].state = record.state & ~CACHE_FIRST;
+  bool arrives = mostChange == 0.0 || isFirst || largest <= mostChange * scale;
+  record.shown = arrives ? target : record.shown + change * (mostChange * scale / largest);
+  float beside = (record.state & CACHE_BRIGHT) != 0u ? kBesideDark : kBeside;
+  float grown = record.blendWeight + kGrowth * (record.blendWeight + beside);
+  float full = fullBlendWeight(record.paths);
+  record.blendWeight = min(mostChange == 0.0 ? full : grown, arrives ? full : kNearly * full);
+  records[index].shown = record.shown;
+  records[index].blendWeight = record.blendWeight;
+}
+
+vec3 withNeighbours(CacheRecord record) {
+  float share = 1.0 - float(record.paths) / CACHE_FULL_PATHS;
+  if (share <= 0.0) return record.irradiance;
+  vec3 sum = float(record.paths) * record.irradiance;
+  float weights = float(record.paths);
+  for (int i = 0; i < kNeighbours; ++i) {
+    uint other;
+    if (!neighbourAt(record.cell, i, other)) continue;
+    uint paths = records[other].paths;
+    float weight = share * float(paths) * smoothstep(0.5, 1.0, dot(records[other].normal, record.normal));
+    if (paths == 0u || !(weight > 0.0)) continue;
+    sum += weight * records[other].irradiance;
+    weights += weight;
+  }
+  return sum / weights;
+}
+
+void main() {
+  uint index = gl_GlobalInvocationID.x;
+  if (index >= recordCount(work.wanted)) return;
+  CacheRecord record = records[index];
+  if (record.paths == 0u) return;
+  int cascade = record.cell.w / CACHE_FACES;
+  ivec3 place = record.cell.xyz - cache.firstCell[cascade].xyz;
+  if (any(lessThan(place, ivec3(0))) || any(greaterThanEqual(place, ivec3(grids.shape.x)))) return;
+  show(index, record, withNeighbours(record));
+  imageStore(cacheTexture, ivec3(place.xy, record.cell.w * grids.shape.x + place.z),
+             record.blendWeight * vec4(record.shown / cacheUnit(), 1.0));
+}

@@ -1,0 +1,58 @@
+// Records of the irradiance cache (engine/irradiance_cache/irradiance_cache.hpp): surface points that store irradiance.
+// Uniform block 6.
+#pragma once
+#include "shared/cascades.h"
+#include "shared/types.h"
+
+SHARED_BEGIN
+
+#define CACHE_FACES 6           // per cell: 2 * axis + (1 if the normal points down the axis)
+#define CACHE_UNPLACED 0xffffffffu  // a record's triangle before its pixel's ray was traced
+#define CACHE_NOWHERE 0xfffffffeu   // the ray met nothing
+#define CACHE_GATHERED 0xffffffu  // path count of a record whose light was gathered at once
+#define CACHE_LANES 64          // per work group, one path each
+#define CACHE_PART_GROUPS 1792  // work groups of a submission, at most (engine/irradiance_cache/light_gather.hpp)
+#define CACHE_PARTS 10          // of the list of records to be lit: 2^14 groups
+#define CACHE_MOST_OPENING 2048 // turns of a lane that may open nodes of a light tree
+#define CACHE_MOST_NEAR 12      // texels of a lane that give light by their outline
+#define CACHE_FULL_PATHS 256.0  // from here on: full weight, no averaging with neighbours
+#define CACHE_FRONT 1u
+#define CACHE_FIRST 2u
+#define CACHE_ALONE 4u  // of a point that keeps light of further bounces: it lights no other surface
+#define CACHE_BRIGHT 8u
+
+struct CacheRecord {
+  ivec4 cell;           // cell of its cascade, counted from the origin; w: cascade * CACHE_FACES + face
+  uint triangle;        // index in the scene
+  uint state;           // CACHE_FRONT: seen from its front; CACHE_FIRST: nothing was shown in its place before;
+                        // CACHE_BRIGHT: what was is much brighter than what a record beside it shows
+  float second;         // weights of the second and third corner
+  float third;
+  vec3 irradiance;      // mean of all paths so far, W per square scene unit
+  uint paths;
+  vec3 position;        // among the frame's positions
+  uint born;            // frame in which a pixel created it
+  vec3 normal;          // for shading, unit, on the visible side
+  uint pixel;           // the pixel that created it
+  vec3 shown;           // irradiance used by lookups: follows `irradiance` and that of its neighbours at a bounded rate
+  float blendWeight;       // its weight in lookups: has faded in, and shows its target, where it is fullBlendWeight()
+};
+
+struct PrefetchPoint {
+  vec3 position;        // among the frame's positions
+  uint isThere;         // 0: the ray met nothing
+  vec3 normal;          // for shading, unit, on the visible side
+  uint padding;
+};
+
+struct CacheConstants {
+  ivec4 firstCell[MAX_CASCADES];  // per cascade, counted from the origin
+  vec3 rayOrigin;       // position of the ray caster's origin in the frame's coordinates
+  uint frame;
+  uint capacity;        // maximum number of records
+  uint mostSegments;    // maximum per path
+  uint markEvery;       // pixel stride, for pictures with more pixels than a key can tell apart
+  uint prefetch;        // points around the camera that need records too
+};
+
+SHARED_END
