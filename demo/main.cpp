@@ -17,7 +17,7 @@ int main(int argc, char** argv) {
                lucerna::demo::addWalk);
   commands.add("render", "Render one picture of a scene", lucerna::demo::addRender);
   commands.add("merge", "Merge parts made by --part (samples, frames, batches, rows)", lucerna::demo::addMerge);
-  commands.add("cluster", "Distribute work over many machines: by a shared folder, by Slurm, or on this machine only",
+  commands.add("cluster", "Divide a command's work into tasks, for Slurm or for processes of this machine",
                lucerna::demo::addCluster);
   commands.add("radiosity", "Radiosity by hemicubes: generate a model, solve it, show it", lucerna::demo::addRadiosity);
   commands.add("info", "Host, driver, limits, extensions; a scene's counts and needs", lucerna::demo::addInfo);

@@ -57,13 +57,7 @@ int runMerge(MergeOptions options) {
   for (const std::string* file : {&options.output, &options.errorOutput})
     if (!file->empty() && !isWritableImageName(*file))
       throwBadInput("-o {}: the extension must be png, hdr, exr or pfm", *file);
-  // In the order of their samples, one in memory at a time.
-  std::vector<std::pair<std::uint32_t, std::string>> parts;
-  for (const std::string& part : options.parts) parts.emplace_back(firstSampleOf(part), part);
-  std::sort(parts.begin(), parts.end());
-  FilmMerge merge;
-  for (const auto& [first, part] : parts) merge.add(filmOf(readFileBytes(part), part), part);
-  const Film film = merge.result();
+  const Film film = mergeFilms({options.parts.begin(), options.parts.end()});
   const FilmStatistics statistics = statisticsOf(film.pixels());
   const Image image = film.picture();
   if (lowerExtension(options.output) == ".png")
@@ -75,7 +69,7 @@ int runMerge(MergeOptions options) {
     fmt::print(
         "{}: {}x{}, {} parts, samples {} to {}, mean radiance {:.6g} {:.6g} {:.6g}, standard error of a pixel {:.3g} "
         "({:.3g} of the mean)\n",
-        options.output.empty() ? options.checkpoint : options.output, image.width, image.height, merge.films(),
+        options.output.empty() ? options.checkpoint : options.output, image.width, image.height, options.parts.size(),
         film.first, film.first + film.mean.front().w - 1, statistics.mean.x, statistics.mean.y, statistics.mean.z,
         statistics.standardError, statistics.relativeError);
   const auto finiteOrNull = [](double value) {
@@ -96,6 +90,16 @@ int runMerge(MergeOptions options) {
 }
 
 }  // namespace
+
+Film mergeFilms(const std::vector<std::filesystem::path>& parts) {
+  // In the order of their samples, one in memory at a time.
+  std::vector<std::pair<std::uint32_t, std::filesystem::path>> inOrder;
+  for (const std::filesystem::path& part : parts) inOrder.emplace_back(firstSampleOf(part), part);
+  std::sort(inOrder.begin(), inOrder.end());
+  FilmMerge merge;
+  for (const auto& [first, part] : inOrder) merge.add(filmOf(readFileBytes(part), part.string()), part.string());
+  return merge.result();
+}
 
 Work addMerge(Command app) {
   auto options = std::make_shared<MergeOptions>();

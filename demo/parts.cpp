@@ -116,6 +116,10 @@ void PartFolder::finish() const {
 
 bool isPartFolder(const fs::path& folder) { return fs::is_directory(folder) && fs::exists(folder / kDescription); }
 
+bool isFinishedPart(const fs::path& folder) {
+  return isPartFolder(folder) && readDescription(folder).at("done").get<bool>();
+}
+
 void copyUnits(const fs::path& from, const fs::path& to) {
   for (const auto& entry : fs::recursive_directory_iterator(from)) {
     const fs::path name = fs::relative(entry.path(), from), target = to / name;

@@ -68,8 +68,9 @@ class PartFolder {
   bool isPart_;
 };
 
-/// Whether a folder is a part folder.
 bool isPartFolder(const std::filesystem::path& folder);
+/// Whether a folder is a part folder with all of its units.
+bool isFinishedPart(const std::filesystem::path& folder);
 
 /// Merges the parts into one new folder `whole` of all units; returns its part.json. Throws Error(badInput) if parts
 /// differ in command, scene or settings, are unfinished, overlap or leave gaps, or if files of the same name differ.

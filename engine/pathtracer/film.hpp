@@ -64,7 +64,6 @@ class FilmMerge {
   /// (pixels with different numbers of samples, or none), repeats samples of a previous one, or leaves a gap between
   /// them.
   void add(const Film& film, const std::string& name);
-  int films() const { return films_; }
   /// Requires at least one add().
   Film result() const;
 

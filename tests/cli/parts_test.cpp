@@ -11,12 +11,10 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
-#include <thread>
 
 namespace {
 
@@ -109,81 +107,6 @@ TEST_F(Parts, TogetherAreOneRun) {
     expectRefused(part(range, "no.film"), "--samples");
   expectRefused("render " + picture() + "--samples 0:4 -o '" + path("no.pfm") + "'", "--checkpoint");
   expectRefused("render " + picture() + "--spp 4", "-o");
-}
-
-TEST_F(Parts, AClusterOfOneMachineMakesTheSamePicture) {
-  ASSERT_EQ(RUN_LUCERNA("render " + picture() + "--spp 48 --quiet -o '" + path("one.pfm") + "'").exitCode, 0);
-  const std::string job = "'" + path("job") + "'";
-  const RunResult planned = RUN_LUCERNA("cluster plan -o " + job + " --tasks 6 --quiet -- render " + picture() +
-                                        "--spp 48 -o '" + path("joined.pfm") + "'");
-  ASSERT_EQ(planned.exitCode, 0) << planned.err;
-  expectRefused(
-      "cluster plan -o " + job + " --tasks 6 -- render " + picture() + "--spp 48 -o '" + path("joined.pfm") + "'",
-      "holds a job");
-  expectRefused("cluster join " + job, "not done");
-  expectRefused("cluster plan -o '" + path("more") + "' --tasks 9 -- render " + picture() + "--spp 8 -o x.pfm",
-                "--tasks 9");
-  expectRefused("cluster plan -o '" + path("more") + "' -- render x.json --technique lpv --spp 8 -o x.pfm",
-                "only pictures with --technique path");
-  expectRefused("cluster status '" + path("more") + "'", "no job");
-  // One task alone, as of an array; a second claim finds it done.
-  ASSERT_EQ(RUN_LUCERNA("cluster run " + job + " --task 2 --quiet").exitCode, 0);
-  EXPECT_TRUE(fs::exists(path("job") + "/done/2.json"));
-  const auto made = fs::last_write_time(path("job") + "/parts/2.film");
-  // Another one's, who died: an old sign of life. And one who lives: its task is left alone until then.
-  std::ofstream(path("job") + "/claims/4.0") << "a machine that is gone\n";
-  fs::last_write_time(path("job") + "/claims/4.0", fs::file_time_type::clock::now() - std::chrono::hours(1));
-  ASSERT_EQ(RUN_LUCERNA("cluster status " + job + " --quiet --json '" + path("status.json") + "'").exitCode, 0);
-  EXPECT_EQ(json("status.json"),
-            nlohmann::json({{"tasks", 6}, {"done", 1}, {"running", 0}, {"abandoned", 1}, {"waiting", 4}}));
-  const RunResult ran = RUN_LUCERNA("cluster run " + job + " --jobs 2 --quiet --json '" + path("run.json") + "'");
-  ASSERT_EQ(ran.exitCode, 0) << ran.err << ran.out;
-  EXPECT_EQ(json("run.json").at("done_here"), 5);
-  EXPECT_EQ(fs::last_write_time(path("job") + "/parts/2.film"), made);  // not done twice
-  EXPECT_TRUE(fs::exists(path("job") + "/claims/4.1"));
-  const RunResult joined = RUN_LUCERNA("cluster join " + job + " --quiet");
-  ASSERT_EQ(joined.exitCode, 0) << joined.err;
-  expectSame(readImage(path("one.pfm")), readImage(path("joined.pfm")), 1e-6);
-}
-
-// A worker and its task end at once, as where a node falls out: what its checkpoint holds is not made again.
-TEST_F(Parts, AKilledTaskGoesOnFromItsCheckpoint) {
-  const std::string job = path("job");
-  ASSERT_EQ(RUN_LUCERNA("cluster plan -o '" + job + "' --tasks 2 --save-every 0 --quiet -- render " + picture() +
-                        "--spp 24000 -o '" + path("joined.pfm") + "'")
-                .exitCode,
-            0);
-  // Killed as a group as soon as the checkpoint is there: 12000 samples of 24x14 pixels take many submissions.
-  const RunResult killed = test::run(
-      "setsid '" LUCERNA_BINARY "' cluster run '" + job +
-      "' --task 1 --save-every 0 --quiet & worker=$!; for i in $(seq 6000); do [ -s '" + job +
-      "/parts/1.film' ] && break; sleep 0.01; done; kill -9 -$worker; wait $worker; ls '" + job + "/parts/1.film'");
-  ASSERT_EQ(killed.exitCode, 0) << killed.err;
-  ASSERT_FALSE(fs::exists(job + "/done/1.json")) << "the task ended before it was killed";
-  fs::last_write_time(job + "/claims/1.0", fs::file_time_type::clock::now() - std::chrono::hours(1));
-  ASSERT_EQ(RUN_LUCERNA("cluster run '" + job + "' --task 1 --quiet").exitCode, 0);
-  EXPECT_TRUE(fs::exists(job + "/claims/1.1"));
-  const auto result = json("job/done/1.json");
-  EXPECT_EQ(result.at("samples"), nlohmann::json({12000, 24000}));
-  EXPECT_GT(result.at("resumed_samples"), 0);
-}
-
-// Two workers at once, in processes of their own: each task is claimed by one of them.
-TEST_F(Parts, NoTaskIsDoneTwice) {
-  const std::string job = path("job");
-  ASSERT_EQ(RUN_LUCERNA("cluster plan -o '" + job + "' --tasks 8 --quiet -- render " + picture() + "--spp 16 -o '" +
-                        path("joined.pfm") + "'")
-                .exitCode,
-            0);
-  const std::string work = "'" LUCERNA_BINARY "' cluster run '" + job + "' --quiet --json ";
-  const RunResult both =
-      test::run(work + "'" + path("a.json") + "' & " + work + "'" + path("b.json") + "'; code=$?; wait; exit $code");
-  ASSERT_EQ(both.exitCode, 0) << both.err;
-  EXPECT_EQ(json("a.json").at("done_here").get<int>() + json("b.json").at("done_here").get<int>(), 8);
-  int claims = 0;
-  for (const auto& entry : fs::directory_iterator(job + "/claims"))
-    claims += entry.path().filename().string()[0] != '.';
-  EXPECT_EQ(claims, 8);
 }
 
 /// Parts of commands that keep units in folders: K of N into parts/K, all merged into `whole`; then what does not
@@ -410,33 +333,164 @@ TEST_F(FolderParts, RowsOfTables) {
   expectRefused("bench tables --original lpv" + partOf(0, 2, "no"), "--fill");
 }
 
-// Any of these commands as a job, its result where the command writes it.
-TEST_F(FolderParts, AClusterCutsAnyOfThem) {
-  const std::string job = path("job"), command = "bench stability --technique direct";
-  ASSERT_EQ(RUN_LUCERNA("cluster plan -o '" + job + "' --tasks 5 --quiet -- " + command + " --json '" +
-                        path("all.json") + "'")
-                .exitCode,
-            0);
-  const RunResult ran = RUN_LUCERNA("cluster run '" + job + "' --jobs 2 --quiet");
+/// A job in a folder whose name the shell and Slurm would both take apart.
+class Cluster : public Parts {
+ protected:
+  std::string job(const std::string& file = "") const { return path("a job of 10%j" + file); }
+  void plan(const std::string& options, const std::string& command) const {
+    const RunResult planned = test::run("cd '" + path("") + "' && '" LUCERNA_BINARY "' cluster plan -o '" + job() +
+                                        "' --quiet " + options + " -- " + command);
+    ASSERT_EQ(planned.exitCode, 0) << planned.err;
+  }
+  RunResult cluster(const std::string& command, const std::string& options = "--quiet") const {
+    return RUN_LUCERNA("cluster " + command + " '" + job() + "' " + options);
+  }
+  /// As Slurm runs a task of the array, in a shell.
+  std::string task(int number) const {
+    return fmt::format("SLURM_ARRAY_TASK_ID={} bash '{}'", number, job("/array.sbatch"));
+  }
+  nlohmann::json status() const {
+    EXPECT_EQ(cluster("status", "--quiet --json '" + path("status.json") + "'").exitCode, 0);
+    return json("status.json");
+  }
+  void expectTheFramesOfOneRun(const std::string& walk, int frames) const {
+    ASSERT_EQ(RUN_LUCERNA(walk + "--quiet --record '" + path("one") + "'").exitCode, 0);
+    for (int i = 0; i < frames; ++i) {
+      const std::string frame = fmt::format("/frame_{:04}.png", i);
+      EXPECT_EQ(readFileBytes(path("one") + frame), readFileBytes(path("all") + frame)) << i;
+    }
+  }
+};
+
+TEST_F(Cluster, MakesThePictureOfOneRun) {
+  const std::string command = "render " + picture() + "--spp 48 -o '" + path("joined.pfm") + "'";
+  ASSERT_EQ(RUN_LUCERNA("render " + picture() + "--spp 48 --quiet -o '" + path("one.pfm") + "'").exitCode, 0);
+  ASSERT_NO_FATAL_FAILURE(plan("--tasks 6", command));
+  expectRefused("cluster plan -o '" + job() + "' --tasks 6 -- " + command, "holds a job");
+  const std::string more = "cluster plan -o '" + path("more") + "' ";
+  expectRefused(more + "--tasks 9 -- render " + picture() + "--spp 8 -o x.pfm", "--tasks 9");
+  expectRefused(more + "-- render x.json --technique lpv --spp 8 -o x.pfm", "only pictures with --technique path");
+  expectRefused(more + "-- render " + picture() + "-o x.pfm", "--spp");
+  expectRefused(more + "-- render " + picture() + "--spp 80", "-o");
+  expectRefused(more + "-- render " + picture() + "--spp 80 --error=1 -o x.pfm", "tasks share the samples");
+  expectRefused(more + "-- bench stability --part 0/2", "each task has its own");
+  expectRefused(more + "-- info", "one that can be divided");
+  expectRefused("cluster status '" + path("more") + "'", "no job");
+
+  // One task as of an array; then the join names the others, and a run makes them alone.
+  const RunResult one = test::run(task(2));
+  ASSERT_EQ(one.exitCode, 0) << one.err;
+  EXPECT_EQ(status(), nlohmann::json({{"tasks", 6}, {"done", 1}, {"begun", 0}, {"missing", 5}}));
+  const RunResult early = cluster("join");
+  EXPECT_EQ(early.exitCode, 1);
+  EXPECT_NE(early.err.find("5 of 6 tasks are not done: 0-1,3-5."), std::string::npos) << early.err;
+  EXPECT_FALSE(fs::exists(path("joined.pfm")));
+  const auto made = fs::last_write_time(job("/parts/2.film"));
+  const RunResult ran = cluster("run", "--jobs 2 --quiet --json '" + path("run.json") + "'");
   ASSERT_EQ(ran.exitCode, 0) << ran.err << ran.out;
-  EXPECT_FALSE(fs::exists(path("all.json")));
-  ASSERT_EQ(RUN_LUCERNA("cluster join '" + job + "' --quiet").exitCode, 0);
-  ASSERT_EQ(RUN_LUCERNA(command + " --quiet --json '" + path("one.json") + "'").exitCode, 0);
-  EXPECT_EQ(json("all.json").at("rows").size(), json("one.json").at("rows").size());
-  EXPECT_EQ(json("all.json").at("failed"), 0);
-  expectRefused("cluster plan -o '" + path("no") + "' -- info", "one that can be divided");
-  expectRefused("cluster plan -o '" + path("no") + "' -- bench stability --part 0/2", "a task's own");
+  EXPECT_EQ(json("run.json"), nlohmann::json({{"done_here", 5}, {"left", 0}}));
+  EXPECT_EQ(fs::last_write_time(job("/parts/2.film")), made);
+  const RunResult joined = cluster("join");
+  ASSERT_EQ(joined.exitCode, 0) << joined.err;
+  expectSame(readImage(path("one.pfm")), readImage(path("joined.pfm")), 1e-6);
 }
 
-// The scripts for Slurm, up to where the program begins: what they make of what Slurm says about GPUs.
-TEST_F(Parts, AJobsScriptHandsOnTheDeviceThatSlurmGave) {
-  const std::string job = path("job");
-  ASSERT_EQ(RUN_LUCERNA("cluster plan -o '" + job + "' --tasks 2 --gpus 1 --quiet -- render " + picture() +
-                        "--spp 4 -o '" + path("joined.pfm") + "'")
-                .exitCode,
-            0);
+// What the checkpoint of a killed task holds is not made again.
+TEST_F(Cluster, AKilledTaskGoesOnFromItsCheckpoint) {
+  ASSERT_NO_FATAL_FAILURE(
+      plan("--tasks 2", "render " + picture() + "--spp 12000 --save-every 0 -o '" + path("joined.pfm") + "'"));
+  // As soon as the checkpoint is there: 6000 samples of 24x14 pixels take many submissions.
+  const RunResult killed =
+      test::run(task(1) + " & task=$!; for i in $(seq 6000); do [ -s '" + job("/parts/1.film") +
+                "' ] && break; sleep 0.01; done; kill -9 $task; wait $task; ls '" + job("/parts/1.film") + "'");
+  ASSERT_EQ(killed.exitCode, 0) << killed.err;
+  ASSERT_EQ(status().at("begun"), 1) << "the task ended before it was killed";
+  ASSERT_EQ(test::run(task(1)).exitCode, 0);
+  const nlohmann::json result = nlohmann::json::parse(std::ifstream(job("/parts/1.json")));
+  EXPECT_EQ(result.at("samples"), nlohmann::json({6000, 12000}));
+  EXPECT_GT(result.at("resumed_samples"), 0);
+}
+
+// A run is the only one; a signal ends its tasks, which keep their frames, and no part of them counts as done.
+TEST_F(Cluster, AStoppedRunKeepsWhatItHas) {
+  const std::string walk = "walk '" LUCERNA_SOURCE_DIR
+                           "/assets/cornell/cornell.json' --size 32x18 --frames 60 --technique path "
+                           "--set path.samples=60 ",
+                    run = "'" LUCERNA_BINARY "' cluster run '" + job() + "' --jobs 2 --quiet";
+  ASSERT_NO_FATAL_FAILURE(plan("--tasks 3", walk + "--record '" + path("all") + "'"));
+  const auto frames = [&] {
+    const fs::recursive_directory_iterator files(job("/parts"));
+    return std::count_if(begin(files), end(files), [](const auto& file) { return file.path().extension() == ".png"; });
+  };
+  // Stopped when two tasks have a frame each, or one more than before.
+  for (const auto& [signal, code] : {std::pair{"TERM", 143}, {"INT", 130}}) {
+    const RunResult stopped =
+        test::run(run + " & run=$!; for i in $(seq 6000); do [ $(find '" + job("/parts") +
+                  "' -name '*.png' | wc -l) -gt " + std::to_string(frames() + 1) + " ] && break; sleep 0.01; done; " +
+                  run + " 2>'" + path("second") + "'; echo $?; kill -" + signal + " $run; wait $run");
+    EXPECT_EQ(stopped.exitCode, code) << stopped.err;
+    EXPECT_NE(stopped.err.find("cluster run"), std::string::npos) << stopped.err;
+    EXPECT_EQ(stopped.out, "2\n");
+    EXPECT_NE(readFileText(path("second")).find("another cluster run works on it"), std::string::npos);
+    EXPECT_LE(20 * status().at("done").get<int>(), frames());
+    EXPECT_GT(status().at("begun"), 0);
+  }
+  // Killed, it takes its tasks along; they hold the lock until they have ended.
+  const std::string freeLock = "flock -n '" + job("/lock") + "' true";
+  const RunResult killed =
+      test::run(run + " & run=$!; sleep 0.3; tasks=$(cat /proc/$run/task/$run/children); " +
+                "kill -STOP $tasks; kill -9 $run; wait $run; " + freeLock + " && exit 1; " +
+                "kill -CONT $tasks; for i in $(seq 600); do " + freeLock + " && exit 0; sleep 0.1; done; exit 2");
+  ASSERT_EQ(killed.exitCode, 0) << killed.err;
+  EXPECT_GT(status().at("begun"), 0) << "tasks of a killed run went on without it";
+  ASSERT_EQ(cluster("run", "--jobs 2 --quiet").exitCode, 0);
+  const RunResult joined = cluster("join");
+  ASSERT_EQ(joined.exitCode, 0) << joined.err;
+  expectTheFramesOfOneRun(walk, 60);
+}
+
+// `submit` hands over the array and a join that waits for its end. A stand-in for Slurm runs them at once where sbatch
+// was called, as Slurm does. Where tasks fail, the join names them, and the second `submit` goes on with them.
+TEST_F(Cluster, SubmitHandsAnArrayAndItsJoinToSlurm) {
+  fs::create_directory_symlink(LUCERNA_SOURCE_DIR "/assets", path("assets"));
+  const std::string scene = "assets/cornell/cornell.json", settings = " --size 32x18 --frames 5 --technique rsm ";
+  ASSERT_NO_FATAL_FAILURE(
+      plan("--tasks 3 --time 7:00 --account physics", "walk " + scene + settings + "--record all --json all.json"));
+  for (const char* script : {"array.sbatch", "join.sbatch"})
+    for (const char* line : {"--requeue\n", "--time=7:00\n", "--account=physics\n"})
+      EXPECT_NE(readFileText(job("/") + script).find(std::string("#SBATCH ") + line), std::string::npos) << script;
+  fs::create_directory(path("bin"));
+  std::ofstream(path("bin/sbatch")) << R"sh(#!/bin/bash
+echo "$*" >> "$CALLS"
+script="${@: -1}"
+last="$(sed -n 's/^#SBATCH --array=0-//p' "$script")"
+for task in ${last:+$(seq 0 "$last")}; do
+  env SLURM_ARRAY_TASK_ID="$task" $IN_TASKS bash "$script" >&2
+done
+[ -z "$last" ] || exec echo 7
+bash "$script" >&2 || echo "join: $?" >&2
+echo 8
+)sh";
+  fs::permissions(path("bin/sbatch"), fs::perms::owner_all);
+  const std::string submit = "CALLS='" + path("calls") + "' PATH='" + path("bin") + "':$PATH '" + job("/submit") + "'";
+  const RunResult failed = test::run("IN_TASKS=LUCERNA_HOST=none " + submit);
+  EXPECT_EQ(failed.out, "7 8\n") << failed.err;
+  EXPECT_NE(failed.err.find("3 of 3 tasks are not done: 0-2."), std::string::npos) << failed.err;
+  EXPECT_NE(failed.err.find("join: 1\n"), std::string::npos) << failed.err;
+  EXPECT_FALSE(fs::exists(path("all")));
+  const RunResult joined = test::run(submit);
+  EXPECT_EQ(joined.out, "7 8\n") << joined.err;
+  const std::string calls = "--parsable array.sbatch\n--parsable --dependency=afterany:7 join.sbatch\n";
+  EXPECT_EQ(readFileText(path("calls")), calls + calls);
+  EXPECT_EQ(json("all.json").at("frames"), 5);
+  expectTheFramesOfOneRun("walk '" + path(scene) + "'" + settings, 5);
+}
+
+// The scripts for Slurm, up to where the program begins, and the device that they take from Slurm's variables.
+TEST_F(Cluster, AScriptHandsOnTheDeviceThatSlurmGave) {
+  ASSERT_NO_FATAL_FAILURE(plan("--tasks 2 --gpus 1", "render " + picture() + "--spp 4 -o joined.pfm"));
   for (const char* script : {"array.sbatch", "join.sbatch"}) {
-    const std::string text = readFileText(job + "/" + script);
+    const std::string text = readFileText(job("/") + script);
     EXPECT_NE(text.find("--gpus-per-task=1"), std::string::npos);
     const std::size_t program = text.find("\n", text.find("esac"));
     ASSERT_NE(program, std::string::npos) << text;
@@ -463,20 +517,18 @@ TEST_F(Parts, AJobsScriptHandsOnTheDeviceThatSlurmGave) {
 }
 
 // Each of several workers draws with the device that it was given: these are none, and each task's log names them.
-TEST_F(Parts, WorkersHaveDevicesOfTheirOwn) {
-  const std::string job = path("job");
-  ASSERT_EQ(RUN_LUCERNA("cluster plan -o '" + job + "' --tasks 8 --quiet -- render " + picture() +
-                        "--host egl --spp 8 -o '" + path("joined.pfm") + "'")
-                .exitCode,
-            0);
-  EXPECT_EQ(RUN_LUCERNA("cluster run '" + job + "' --jobs 2 --devices 97,98 --quiet").exitCode, 1);
+TEST_F(Cluster, WorkersHaveDevicesOfTheirOwn) {
+  ASSERT_NO_FATAL_FAILURE(plan("--tasks 8", "render " + picture() + "--host egl --spp 8 -o joined.pfm"));
+  const RunResult failed = cluster("run", "--jobs 2 --devices 97,98 --quiet");
+  EXPECT_EQ(failed.exitCode, 1);
+  EXPECT_NE(failed.err.find("8 of 8 tasks are not done: 0-7."), std::string::npos) << failed.err;
   std::string logs;
-  for (const auto& entry : fs::directory_iterator(job + "/logs")) logs += readFileText(entry.path());
+  for (const auto& entry : fs::directory_iterator(job("/logs"))) logs += readFileText(entry.path());
   for (const char* device : {"LUCERNA_EGL_DEVICE=97: no such device", "LUCERNA_EGL_DEVICE=98: no such device"})
     EXPECT_NE(logs.find(device), std::string::npos) << logs;
   if (test::run("LUCERNA_EGL_DEVICE=0 '" LUCERNA_BINARY "' info --quiet --host egl").exitCode != 0)
     GTEST_SKIP() << "no EGL device here";
-  EXPECT_EQ(RUN_LUCERNA("cluster run '" + job + "' --jobs 2 --devices 0,0 --quiet").exitCode, 0);
+  EXPECT_EQ(cluster("run", "--jobs 2 --devices 0,0 --quiet").exitCode, 0);
 }
 
 }  // namespace
