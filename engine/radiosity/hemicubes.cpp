@@ -79,7 +79,7 @@ Hemicubes::Hemicubes(gl::ProgramLibrary& programs, const gl::Capabilities& capab
       patchCount_(static_cast<int>(mesh.patches.size())),
       rays_(rays),
       pieces_(kSecondsOfPiece, mostTurnsOfHemicube(mesh, settings.resolution), kMostHemicubes,
-              settings.unmeasuredTurns) {
+              settings.unmeasuredIterations) {
   CHECK(settings.resolution >= 2 && settings.resolution % 2 == 0, "hemicubes of {} pixels", settings.resolution);
   if (settings_.visibility == HemicubeVisibility::automatic) choose(programs, capabilities);
   const auto patches = static_cast<std::size_t>(patchCount_);

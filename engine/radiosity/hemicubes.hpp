@@ -6,13 +6,13 @@
 // near plane. Sources: shaders/REFERENCES.md [CohenGreenberg1985], [BaumRushmeierWinget1989], [Olano1997].
 #pragma once
 
-#include "base/named_values.hpp"
 #include "gl/context.hpp"
 #include "gl/objects.hpp"
 #include "gl/pieces.hpp"
 #include "gl/program.hpp"
 #include "gl/read_back.hpp"
-#include "radiosity/hemicube_map.hpp"
+#include "radiosity/form_factor_rows.hpp"
+#include "radiosity/hemicube_settings.hpp"
 #include "radiosity/patches.hpp"
 
 #include <cstdint>
@@ -25,59 +25,6 @@
 namespace lucerna {
 
 class RayScene;
-
-/// Visibility of a hemicube's pixels. Rows differ by what lies within rounding of a pixel's centre, with the item
-/// buffer within 1/512 pixel.
-enum class HemicubeVisibility {
-  automatic,  ///< measured at start, if the whole work takes longer than measuring
-  itemBuffer,  ///< patches' numbers drawn to layers by the GPU's rasteriser
-  raster,  ///< a rasteriser in compute shaders
-  rays  ///< one through each pixel's centre
-};
-constexpr std::array<std::string_view, 4> namesOf(HemicubeVisibility) {
-  return {"auto", "item-buffer", "raster", "rays"};
-}
-
-struct HemicubeSettings {
-  HemicubeVisibility visibility = HemicubeVisibility::automatic;
-  double worthMeasuring =
-      10.0;  ///< automatic: if all hemicubes take raster this many seconds, the others are measured too
-  int resolution = 64;  ///< pixels per side of the full face; even
-  DeltaMap map = DeltaMap::exact;
-  bool randomRoll = true;  ///< each turned about its normal by a hash of seed and patch; else towards the first corner
-  std::uint32_t seed = 1;
-  int rolls =
-      1;  ///< hemicubes per patch, each turned differently, whose mean counts: antialiasing; 1 without randomRoll
-  int exactPixels = 12;  ///< patches that cover this many pixels get their closed form; 0: never
-  float nearDistance = 3.0f;  ///< receivers are divided until (distance / size of a part) is this; 0: never
-  int mostParts = 8;  ///< most parts per side of a receiver
-  double unmeasuredTurns =
-      gl::kUnmeasuredTurns;  ///< of a first submission (gl/pieces.hpp); the rows are the same, bit by bit
-  std::size_t batchBytes = 0;  ///< of GPU memory per batch and buffer; 0: automatic
-};
-
-/// Consecutive rows of the matrix; entries in the order of patches.
-struct FormFactorRows {
-  int first = 0;  ///< patch of the first row
-  std::vector<std::uint32_t> counts;  ///< entries per row
-  std::vector<float> fronts,
-      backs;  ///< fractions of the hemisphere that show fronts and backs, by pixels; the rest is open
-  std::vector<std::uint32_t> patches;  ///< of each entry
-  std::vector<float> factors;  ///< of each entry, > 0
-};
-
-/// Results of a batch, read back.
-struct DrawnHemicubes {
-  int first = 0, count = 0, patchCount = 0;
-  std::vector<float> factors;  ///< raster: hemicube-major, by pixels; below 0 if a back was seen
-  std::vector<glm::uvec2> kept;  ///< rays, item buffer, which leave `factors` empty: hemicube * patchCount + patch,
-                                 ///< unordered; bits of such a factor
-  std::vector<glm::uvec2> exact;  ///< place in `factors` or `kept`; bits of the closed form, which replaces the pixels'
-};
-/// Without GL: another thread can do it while the next batch is drawn.
-FormFactorRows rowsOf(DrawnHemicubes drawn);
-/// The mean of hemicubes of the same patches, at least one.
-FormFactorRows meanRowsOf(std::vector<DrawnHemicubes> drawn);
 
 /// Raster or rays, whichever has less to do as counted from patches and pixels: the same answer on every machine,
 /// unlike automatic's clock.

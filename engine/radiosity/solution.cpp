@@ -7,6 +7,7 @@
 #include "base/log.hpp"
 #include "radiosity/direct_light.hpp"
 #include "radiosity/form_factor_matrix.hpp"
+#include "radiosity/hemicubes.hpp"
 #include "radiosity/hidden_parts.hpp"
 #include "radiosity/row_file.hpp"
 #include "scene/needs.hpp"

@@ -8,7 +8,7 @@
 
 #include "gl/context.hpp"
 #include "gl/program.hpp"
-#include "radiosity/hemicubes.hpp"
+#include "radiosity/hemicube_settings.hpp"
 #include "radiosity/patches.hpp"
 #include "radiosity/solvers.hpp"
 
@@ -16,6 +16,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace lucerna {

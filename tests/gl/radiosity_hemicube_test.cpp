@@ -206,8 +206,8 @@ TEST_F(Hemicube, RowsDoNotDependOnHowTheyAreCutIntoSubmissions) {
     HemicubeSettings settings;
     settings.visibility = visibility;
     settings.resolution = 32;
-    const auto rowsBy = [&](double unmeasuredTurns, bool streamed, double& largest) {
-      settings.unmeasuredTurns = unmeasuredTurns;
+    const auto rowsBy = [&](double unmeasuredIterations, bool streamed, double& largest) {
+      settings.unmeasuredIterations = unmeasuredIterations;
       Hemicubes hemicubes(library(), capabilities(), mesh, settings);
       std::vector<FormFactorRows> all;
       if (streamed)

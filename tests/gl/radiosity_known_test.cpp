@@ -1,6 +1,7 @@
 // Form factors and solutions from the GPU against known answers of rooms, bowls and doors.
 #include "base/error.hpp"
 #include "radiosity/form_factor_matrix.hpp"
+#include "radiosity/hemicubes.hpp"
 #include "radiosity/solution.hpp"
 #include "scene/triangle_parts.hpp"
 #include "support/form_factor_twin.hpp"
