@@ -217,8 +217,8 @@ Work addSolve(Command app) {
   offer(shortFor("radiosity.solver",
                  app.addOption("--solver", options->solver,
                                "original: jacobi (default) or gauss-seidel; corrected: auto, jacobi, gauss-seidel, "
-                               "progressive, overshoot, anderson, cg")),
-        {"auto", "jacobi", "gauss-seidel", "progressive", "overshoot", "anderson", "cg"});
+                               "progressive, anderson, cg")),
+        {"auto", "jacobi", "gauss-seidel", "progressive", "anderson", "cg"});
   std::vector<std::string> switches;
   for (const RadiosityDeviation& deviation : allRadiosityDeviations())
     for (const char* state : {"=on", "=off"}) switches.push_back(deviation.name + std::string(state));

@@ -19,7 +19,7 @@ namespace lucerna {
 namespace {
 
 constexpr char kSolutionMagic[8] = {'L', 'U', 'C', 'L', 'I', 'G', 'H', 'T'};
-constexpr std::uint32_t kSolutionVersion = 4;  // 4: with the sky's irradiance
+constexpr std::uint32_t kSolutionVersion = 5;  // 5: solvers without overshooting, numbered anew
 
 struct FileHeader {
   char magic[8];
