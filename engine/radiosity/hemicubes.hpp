@@ -7,8 +7,6 @@
 #pragma once
 
 #include "gl/context.hpp"
-#include "gl/objects.hpp"
-#include "gl/pieces.hpp"
 #include "gl/program.hpp"
 #include "gl/read_back.hpp"
 #include "radiosity/form_factor_rows.hpp"
@@ -18,12 +16,12 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
-#include <string_view>
 #include <vector>
 
 namespace lucerna {
 
+class HemicubeBatch;
+class HemicubeMethod;
 class RayScene;
 
 /// Raster or rays, whichever has less to do as counted from patches and pixels: the same answer on every machine,
@@ -49,17 +47,17 @@ class Hemicubes {
     double milliseconds;
   };
   const std::vector<Cost>& costs() const { return costs_; }
-  int batchSize() const { return batch_; }
-  int patchCount() const { return patchCount_; }
+  int batchSize() const;
+  int patchCount() const;
   /// 1 for emissive patches that are small compared with the scene: factors to them are closed forms, however few
   /// pixels they cover.
-  const std::vector<std::uint32_t>& smallSources() const { return smallSources_; }
+  const std::vector<std::uint32_t>& smallSources() const;
   /// Rows of `count` hemicubes from `first`, at most batchSize(); waits for them.
   FormFactorRows rows(int first, int count);
-  /// Submissions so far, and the estimated turns of the largest (gl/pieces.hpp).
-  double largestTurns() const { return pieces_.largestTurns(); }
-  /// Rows first..end - 1, piece by piece: while the GPU draws one, another thread makes rows of the previous one and
-  /// passes them to `take`, in order and never two at once. `goOn` is called on this thread after each piece, with the
+  /// Estimated loop iterations of the largest submission so far (gl/pieces.hpp).
+  double largestIterations() const { return chunks_.largestTurns(); }
+  /// Rows first..end - 1, chunk by chunk: while the GPU draws one, another thread makes rows of the previous one and
+  /// passes them to `take`, in order and never two at once. `goOn` is called on this thread after each chunk, with the
   /// patches drawn so far; false stops.
   void stream(int first, int end, const std::function<void(const FormFactorRows&)>& take,
               const std::function<bool(int done)>& goOn = {});
@@ -68,38 +66,24 @@ class Hemicubes {
  private:
   DrawnHemicubes draw(int first, int count, int roll);  ///< one submission; waits for it
   std::vector<DrawnHemicubes> drawRolls(int first, int count);  ///< one submission per roll
-  int rolls() const { return settings_.randomRoll ? settings_.rolls : 1; }
-  int pieceSize() const;
-  struct Frame {
-    glm::vec4 origin, u, v, n;
-  };
-  struct ItemBuffer {
-    gl::Texture items, depth;
-    gl::Framebuffer target;
-    gl::VertexArray noAttributes;
-    const gl::Program *draw, *sum;
-  };
-  bool listsKept() const { return settings_.visibility != HemicubeVisibility::raster; }
-  Frame frameOf(int patch, int roll) const;
-  void choose(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities);
-  bool seesAsRaster(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, Hemicubes& drawn) const;
-  void begin(const gl::Program& program, int first, int count) const;
+  int chunkSize() const;
+  double millisecondsEach();
+  double seenBy(int patch);
+  static std::vector<Cost> measure(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities,
+                                   const RadiosityMesh& mesh, HemicubeSettings settings, const RayScene* rays);
+  static bool seesAsRaster(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities,
+                           const RadiosityMesh& mesh, HemicubeSettings settings, const RayScene* rays,
+                           Hemicubes& drawn);
 
-  const RadiosityMesh* mesh_;
   HemicubeSettings settings_;
-  int patchCount_ = 0, batch_ = 0;
-  std::vector<std::uint32_t> smallSources_;
   std::vector<Cost> costs_;
-  const gl::Program *depth_ = nullptr, *depthLarge_ = nullptr, *sum_ = nullptr, *sumLarge_ = nullptr, *exact_ = nullptr,
-                    *traceRays_ = nullptr;
   std::unique_ptr<RayScene> ownRays_;
   const RayScene* rays_ = nullptr;  ///< if pixels or small sources are seen by rays
-  std::optional<ItemBuffer> itemBuffer_;
-  gl::BufferTexture corners_, deltaFactors_, keys_;
-  gl::Buffer sources_, frames_, factors_, keptList_, exactList_, largeList_;
+  std::unique_ptr<HemicubeBatch> batch_;
+  std::unique_ptr<HemicubeMethod> method_;
+  const gl::Program *sum_ = nullptr, *sumLarge_ = nullptr, *exact_ = nullptr;
   gl::Staging staging_{"hemicube results"};
-  gl::PieceSize pieces_;  ///< hemicubes per submission
-  int sourceCount_ = 0;
+  gl::PieceSize chunks_;  ///< hemicubes per submission
 };
 
 }  // namespace lucerna

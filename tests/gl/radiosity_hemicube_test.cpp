@@ -215,7 +215,7 @@ TEST_F(Hemicube, RowsDoNotDependOnHowTheyAreCutIntoSubmissions) {
       else
         for (int first = 0, count = hemicubes.batchSize(); first < hemicubes.patchCount(); first += count)
           all.push_back(hemicubes.rows(first, std::min(count, hemicubes.patchCount() - first)));
-      largest = hemicubes.largestTurns();
+      largest = hemicubes.largestIterations();
       std::vector<float> values;
       for (const FormFactorRows& rows : all) {
         EXPECT_EQ(rows.counts.size(), rows.fronts.size());
