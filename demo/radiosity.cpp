@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sys/stat.h>
 
 namespace lucerna::demo {
 
@@ -277,6 +278,13 @@ Work addSolve(Command app) {
 }
 
 }  // namespace
+
+std::array<std::int64_t, 4> stampOf(const std::filesystem::path& file) {
+  struct stat s {};
+  if (::stat(file.c_str(), &s) != 0) return {};
+  return {static_cast<std::int64_t>(s.st_ino), static_cast<std::int64_t>(s.st_size),
+          static_cast<std::int64_t>(s.st_mtim.tv_sec), static_cast<std::int64_t>(s.st_mtim.tv_nsec)};
+}
 
 RadSource loadRadSource(const std::string& file, std::optional<double> edge, std::optional<unsigned> triangles) {
   RadSource source{{loadScene(file)}};

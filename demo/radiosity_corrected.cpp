@@ -13,9 +13,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
 #include <fstream>
-#include <sys/stat.h>
 
 namespace lucerna::demo {
 
@@ -29,14 +27,6 @@ bool isRadFile(const std::filesystem::path& file) {
   const std::uintmax_t size = std::filesystem::file_size(file, error);
   return stream.read(reinterpret_cast<char*>(&count), sizeof count) && !error &&
          size == 4 + std::uintmax_t{count} * sizeof(RadTriangle);
-}
-
-/// Distinguishes a file from one that replaces it.
-std::array<std::int64_t, 4> stampOf(const std::string& file) {
-  struct stat s {};
-  if (::stat(file.c_str(), &s) != 0) return {};
-  return {static_cast<std::int64_t>(s.st_ino), static_cast<std::int64_t>(s.st_size),
-          static_cast<std::int64_t>(s.st_mtim.tv_sec), static_cast<std::int64_t>(s.st_mtim.tv_nsec)};
 }
 
 /// Computes only a part's rows.
@@ -132,8 +122,7 @@ int solveCorrected(const RadiositySolve& options) {
   if (stampOf(options.out) != before)
     throwBadInput(
         "{}: was changed by another program while it was being solved; it is left unchanged. The same command takes "
-        "the "
-        "form factors from {}",
+        "the form factors from {}",
         options.out, checkpoint.string());
   // Store the result in the same kind of file as the input, then report it.
   if (rad) {

@@ -20,9 +20,6 @@ class FormFactorMatrix {
   void appendRow(std::span<const std::uint32_t> patches, std::span<const float> factors);
   std::size_t rowCount() const { return starts_.size() - 1; }
   std::size_t entryCount() const { return patches_.size(); }
-  std::size_t bytes() const {
-    return patches_.size() * (sizeof(std::uint32_t) + sizeof(float)) + starts_.size() * sizeof(std::size_t);
-  }
 
   struct Row {
     std::span<const std::uint32_t> patches;

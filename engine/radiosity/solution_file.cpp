@@ -43,15 +43,10 @@ std::uint64_t fingerprint(const Scene& scene) {
   return hash.value();
 }
 
-/// "KEY=VALUE" each. Files of earlier versions use former spellings of keys.
+/// "KEY=VALUE" each.
 std::vector<std::string> wordsOf(const std::string& text) {
   std::istringstream stream(text);
-  std::vector<std::string> words{std::istream_iterator<std::string>(stream), {}};
-  for (std::string& word : words) {
-    if (word.starts_with("rad.near=")) word.replace(0, 8, "radiosity.part-distance");
-    if (word.starts_with("rad.")) word.replace(0, 3, "radiosity");
-  }
-  return words;
+  return {std::istream_iterator<std::string>(stream), {}};
 }
 
 std::uint32_t bitsOf(const RadiosityDeviations& deviations) {

@@ -316,12 +316,7 @@ TEST(RadiosityKnown, RepairMakesReciprocityAndSums) {
 }
 
 TEST(RadiosityKnown, DeltaFormFactors) {
-  const double sums[][2] = {{8, 1.008568800},   {16, 1.002123181},  {32, 1.000529642},
-                            {64, 1.000132339},  {100, 1.000054200}, {128, 1.000033080},
-                            {256, 1.000008270}, {500, 1.000002168}, {512, 1.000002067}};
-  for (const auto& [size, sum] : sums) {
-    const int n = static_cast<int>(size);
-    EXPECT_NEAR(sumOverHemicube(deltaFormFactors(n, DeltaMap::centre), n), sum, 1e-8) << n;
+  for (const int n : {8, 16, 32, 64, 100, 128, 256, 500, 512}) {
     const auto exact = deltaFormFactors(n, DeltaMap::exact);
     EXPECT_NEAR(sumOverHemicube(exact, n), 1.0, 1e-12);
     EXPECT_NEAR(std::accumulate(exact.begin(), exact.begin() + n * n, 0.0), 0.554126423979572, 1e-12);
@@ -334,7 +329,7 @@ TEST(RadiosityKnown, DeltaFormFactors) {
   EXPECT_LT(published[512 * 1024 + 512], 0.7 * exact[512 * 1024 + 512]);
 }
 
-TEST(RadiosityKnown, TheTwinKnowsTheClosedForms) {
+TEST(RadiosityKnown, TheReferenceKnowsTheClosedForms) {
   EXPECT_NEAR(twin::opposedSquares(1.0), 0.199824895698387, 1e-14);
   const auto walls = twin::cubeSquares(1);
   EXPECT_NEAR(twin::areaToArea(walls[0], walls[1], 12), 0.199824895698387, 1e-10);
