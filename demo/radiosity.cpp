@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sys/stat.h>
 
 namespace lucerna::demo {
 
@@ -217,8 +218,8 @@ Work addSolve(Command app) {
   offer(shortFor("radiosity.solver",
                  app.addOption("--solver", options->solver,
                                "original: jacobi (default) or gauss-seidel; corrected: auto, jacobi, gauss-seidel, "
-                               "progressive, overshoot, anderson, cg")),
-        {"auto", "jacobi", "gauss-seidel", "progressive", "overshoot", "anderson", "cg"});
+                               "progressive, anderson, cg")),
+        {"auto", "jacobi", "gauss-seidel", "progressive", "anderson", "cg"});
   std::vector<std::string> switches;
   for (const RadiosityDeviation& deviation : allRadiosityDeviations())
     for (const char* state : {"=on", "=off"}) switches.push_back(deviation.name + std::string(state));
@@ -277,6 +278,13 @@ Work addSolve(Command app) {
 }
 
 }  // namespace
+
+std::array<std::int64_t, 4> stampOf(const std::filesystem::path& file) {
+  struct stat s {};
+  if (::stat(file.c_str(), &s) != 0) return {};
+  return {static_cast<std::int64_t>(s.st_ino), static_cast<std::int64_t>(s.st_size),
+          static_cast<std::int64_t>(s.st_mtim.tv_sec), static_cast<std::int64_t>(s.st_mtim.tv_nsec)};
+}
 
 RadSource loadRadSource(const std::string& file, std::optional<double> edge, std::optional<unsigned> triangles) {
   RadSource source{{loadScene(file)}};

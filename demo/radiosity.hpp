@@ -6,6 +6,9 @@
 #include "radiosity/original/coarse_scene.hpp"
 #include "radiosity/settings.hpp"
 
+#include <array>
+#include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -42,6 +45,9 @@ struct RadSource {
   double edge = 0.0;  ///< the value used
 };
 RadSource loadRadSource(const std::string& file, std::optional<double> edge, std::optional<unsigned> triangles);
+
+/// Distinguishes a file from one that replaces it; zeros if there is none. demo/radiosity.cpp
+std::array<std::int64_t, 4> stampOf(const std::filesystem::path& file);
 
 Work addRadiosityShow(Command app);
 

@@ -6,18 +6,14 @@
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "radiosity/original/rad_file.hpp"
+#include "radiosity/original/rad_scene.hpp"
 #include "radiosity/row_file.hpp"
 #include "radiosity/solution.hpp"
 
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cmath>
-#include <array>
 #include <fstream>
-#include <map>
-#include <numbers>
-#include <sys/stat.h>
 
 namespace lucerna::demo {
 
@@ -31,41 +27,6 @@ bool isRadFile(const std::filesystem::path& file) {
   const std::uintmax_t size = std::filesystem::file_size(file, error);
   return stream.read(reinterpret_cast<char*>(&count), sizeof count) && !error &&
          size == 4 + std::uintmax_t{count} * sizeof(RadTriangle);
-}
-
-/// The bag of triangles as a scene: one material for each pair of reflectance and emission. Exitances are the file's
-/// own whole numbers.
-Scene sceneOf(const std::vector<RadTriangle>& triangles, const std::string& name) {
-  Scene scene;
-  scene.name = name;
-  std::map<std::pair<float, std::uint32_t>, std::vector<std::uint32_t>> ofMaterial;
-  for (const RadTriangle& t : triangles) {
-    ofMaterial[{t.ro, t.e}].push_back(static_cast<std::uint32_t>(scene.vertices.size()));
-    for (const auto& p : {t.p1, t.p2, t.p3}) {
-      scene.vertices.push_back({{p[0], p[1], p[2]}, {}, {t.n[0], t.n[1], t.n[2]}});
-      scene.bounds.add(glm::dvec3(scene.vertices.back().position));
-    }
-  }
-  for (const auto& [key, firsts] : ofMaterial) {
-    Material& material = scene.materials.emplace_back();
-    material.name = fmt::format("ro {} e {}", key.first, key.second);
-    material.diffuse = glm::vec3(key.first);
-    material.emission = glm::vec3(static_cast<float>(key.second / std::numbers::pi));
-    Mesh& mesh = scene.meshes.emplace_back();
-    mesh.material = static_cast<int>(scene.materials.size()) - 1;
-    mesh.firstIndex = static_cast<std::uint32_t>(scene.indices.size());
-    mesh.indexCount = static_cast<std::uint32_t>(3 * firsts.size());
-    for (const std::uint32_t first : firsts) scene.indices.insert(scene.indices.end(), {first, first + 1, first + 2});
-  }
-  return scene;
-}
-
-/// Distinguishes a file from one that replaces it.
-std::array<std::int64_t, 4> stampOf(const std::string& file) {
-  struct stat s {};
-  if (::stat(file.c_str(), &s) != 0) return {};
-  return {static_cast<std::int64_t>(s.st_ino), static_cast<std::int64_t>(s.st_size),
-          static_cast<std::int64_t>(s.st_mtim.tv_sec), static_cast<std::int64_t>(s.st_mtim.tv_nsec)};
 }
 
 /// Computes only a part's rows.
@@ -121,7 +82,7 @@ int solveCorrected(const RadiositySolve& options) {
     triangles = readRadFile(options.in);
     checkRadTriangles(triangles, options.in);
   }
-  const Scene scene = rad ? sceneOf(triangles, options.in) : loadScene(options.in);
+  const Scene scene = rad ? sceneOfTriangles(triangles, options.in) : loadScene(options.in);
   RenderSettings all;
   for (const auto& [option, assignment] : options.shortSettings) {
     const auto [setting, value] = parseAssignment(assignment);
@@ -161,19 +122,11 @@ int solveCorrected(const RadiositySolve& options) {
   if (stampOf(options.out) != before)
     throwBadInput(
         "{}: was changed by another program while it was being solved; it is left unchanged. The same command takes "
-        "the "
-        "form factors from {}",
+        "the form factors from {}",
         options.out, checkpoint.string());
   // Store the result in the same kind of file as the input, then report it.
   if (rad) {
-    for (RadTriangle& triangle : triangles) triangle.b = 0;
-    // Patches index triangles in the scene's order, which is by material.
-    for (std::size_t i = 0; i < solution.irradiance.size(); ++i) {
-      const std::size_t index = scene.indices[3 * solution.mesh.patches[i].triangle] / 3;
-      triangles[index].b = static_cast<std::uint32_t>(
-          std::clamp(std::round(solution.irradiance[i].x), 0.0, static_cast<double>(kRadMost)));
-    }
-    writeRadFile(options.out, triangles);
+    writeRadFile(options.out, withReceived(std::move(triangles), scene, solution.mesh, solution.irradiance));
   } else {
     saveSolution(options.out, scene, solution);
   }

@@ -9,10 +9,7 @@
 
 #include <fmt/core.h>
 
-#include <sys/stat.h>
-
-#include <chrono>
-#include <cmath>
+#include <array>
 #include <cstring>
 #include <numeric>
 
@@ -21,6 +18,7 @@ namespace lucerna::demo {
 namespace {
 
 namespace fs = std::filesystem;
+
 /// OUT and its checkpoint, as this run left them.
 class Files {
  public:
@@ -32,7 +30,7 @@ class Files {
   /// The content of OUT, or its intended content if it does not exist yet.
   void holds(std::span<const RadTriangle> triangles) {
     digest_ = digestOf(encodeRadFile(triangles));
-    stamp_ = stamp();
+    stamp_ = stampOf(out_);
   }
 
   void saveWithinSweep(const OriginalProgress& progress) const {
@@ -47,7 +45,7 @@ class Files {
     writeCheckpoint(checkpoint_, {digest_, after, settings_, progress});
     writeRadFile(out_, triangles);
     digest_ = after;
-    stamp_ = stamp();
+    stamp_ = stampOf(out_);
   }
 
   void removeCheckpoint() const {
@@ -56,25 +54,17 @@ class Files {
   }
 
  private:
-  using Stamp = std::array<std::int64_t, 4>;
-  Stamp stamp() const {
-    struct stat s {};
-    if (::stat(out_.c_str(), &s) != 0) return {};
-    return {static_cast<std::int64_t>(s.st_ino), static_cast<std::int64_t>(s.st_size),
-            static_cast<std::int64_t>(s.st_mtim.tv_sec), static_cast<std::int64_t>(s.st_mtim.tv_nsec)};
-  }
   void refuseIfChanged() const {
-    if (stamp() != stamp_)
+    if (stampOf(out_) != stamp_)
       throwBadInput(
           "{}: was changed by another program since this run last wrote or read it; it is left unchanged, and the "
-          "results "
-          "since then are lost",
+          "results since then are lost",
           out_.string());
   }
 
   fs::path out_, checkpoint_;
   std::uint64_t settings_, digest_ = 0;
-  Stamp stamp_{};
+  std::array<std::int64_t, 4> stamp_{};
 };
 
 bool sameButReceived(std::span<const RadTriangle> a, std::span<const RadTriangle> b) {

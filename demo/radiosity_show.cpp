@@ -1,7 +1,7 @@
 // lucerna radiosity show FILE [s|c]: a triangle file in a window, or as one picture with -o.
-#include "base/clock.hpp"
 #include "radiosity.hpp"
 
+#include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "base/log.hpp"

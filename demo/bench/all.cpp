@@ -176,6 +176,9 @@ class Report {
     if (!interrupted())
       keep("rad", "Radiosity as published",
            drawRadPictures(programs, kSheetTile, kRadPictures * scale, options_.common.quiet));
+    if (!interrupted())
+      keep("rad-progressive", "Progressive refinement beside Jacobi and Gauss-Seidel",
+           drawProgressivePictures(context_, programs, kSheetTile, scale, options_.common.quiet));
   }
 
   void rays(const std::vector<std::string>& files) {

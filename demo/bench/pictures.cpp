@@ -26,6 +26,7 @@ struct PicturesOptions {
   CommonOptions common;
   std::string original, scene, output, camera, fidelity = "corrected", size;
   std::optional<double> exposure, scale;
+  bool progressive = false;
 };
 
 struct Picture {
@@ -265,6 +266,7 @@ int runPictures(const PicturesOptions& options) {
   if (lowerExtension(options.output) != ".png") throwBadInput("-o {}: the extension must be png", options.output);
   if (options.exposure && !(*options.exposure > 0.0 && *options.exposure <= 1e12))
     throwBadInput("--exposure {}: expected a number above 0, at most 1e12", *options.exposure);
+  if (options.progressive && options.original != "rad") throwBadInput("--progressive: only with --original rad");
   if (options.original == "vpt") return runVpt(options);
   if (options.scale && options.original != "rad")
     throwBadInput("--scale {}: only with --original vpt and rad", *options.scale);
@@ -278,7 +280,7 @@ int runPictures(const PicturesOptions& options) {
       throwBadInput("--camera {}: --original rad has one view of each model", options.camera);
     const double scale = options.scale.value_or(1.0);
     if (!(scale > 0.0 && scale <= 1.0)) throwBadInput("--scale {}: expected a number above 0, at most 1", scale);
-    return bench::runRadPictures(options.common, options.output, usual.size, scale);
+    return bench::runRadPictures(options.common, options.output, usual.size, scale, options.progressive);
   }
   const std::string file = bench::sceneOrAtrium(options.scene);
   const Scene scene = loadScene(file);
@@ -325,6 +327,8 @@ Work addBenchPictures(Command app) {
   app.addOption("--scale", options->scale,
                 "vpt: the published samples times this (0.02); rad: triangles over and pixels times this (1); above "
                 "0, at most 1");
+  app.addFlag("--progressive", options->progressive,
+              "rad: progressive refinement (2.2.3.1) after 1 to 1000 shots, beside Jacobi and Gauss-Seidel");
   app.addOption("--exposure", options->exposure, "multiplies radiance before tone mapping (the scene's)");
   options->common.declare(app);
   return [options] { return runPictures(*options); };

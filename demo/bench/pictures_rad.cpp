@@ -1,5 +1,5 @@
 // lucerna bench pictures --original rad -o FILE.png: the radiosity original's figures, from the three models, on one
-// sheet.
+// sheet; --progressive: pictures_progressive.cpp.
 #include "bench/rad.hpp"
 
 #include "base/data.hpp"
@@ -287,12 +287,14 @@ VptSheet drawRadPictures(gl::ProgramLibrary& programs, glm::ivec2 size, double s
   return result;
 }
 
-int runRadPictures(const CommonOptions& common, const std::string& output, glm::ivec2 size, double scale) {
+int runRadPictures(const CommonOptions& common, const std::string& output, glm::ivec2 size, double scale,
+                   bool progressive) {
   const auto host = common.makeHost(false);
   const gl::Context context;
   gl::ProgramLibrary programs;
   watchForInterrupt();
-  const VptSheet sheet = drawRadPictures(programs, size, scale, common.quiet);
+  const VptSheet sheet = progressive ? drawProgressivePictures(context, programs, size, scale, common.quiet)
+                                     : drawRadPictures(programs, size, scale, common.quiet);
   if (interrupted()) return exitCode();
   writePng(output, sheet.sheet);
   if (!common.quiet)

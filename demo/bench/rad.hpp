@@ -18,6 +18,12 @@ int runRadTables(const CommonOptions& common, double scale, const PartOptions& p
 /// Maps 3.5 to 3.8, pictures 3.10 to 3.18 and 4.1 to 4.6, as far as the three models can show them, on one sheet; empty
 /// if interrupted. scale: 0..1, of the triangles and pixels.
 VptSheet drawRadPictures(gl::ProgramLibrary& programs, glm::ivec2 size, double scale, bool quiet);
-int runRadPictures(const CommonOptions& common, const std::string& output, glm::ivec2 size, double scale);
+/// Progressive refinement after 1, 10, 100 and 1,000 shots beside the other methods after as many rows, on one sheet;
+/// empty if interrupted. scale: 0..1, of the triangles.
+VptSheet drawProgressivePictures(const gl::Context& context, gl::ProgramLibrary& programs, glm::ivec2 size,
+                                 double scale, bool quiet);
+/// Either sheet as a file.
+int runRadPictures(const CommonOptions& common, const std::string& output, glm::ivec2 size, double scale,
+                   bool progressive);
 
 }  // namespace lucerna::demo::bench

@@ -119,8 +119,8 @@ void addStiff(std::vector<StabilityCase>& cases) {
         });
   }
   for (const RadiositySolver solver :
-       {RadiositySolver::jacobi, RadiositySolver::gaussSeidel, RadiositySolver::progressive, RadiositySolver::overshoot,
-        RadiositySolver::anderson, RadiositySolver::conjugateGradients})
+       {RadiositySolver::jacobi, RadiositySolver::gaussSeidel, RadiositySolver::progressive, RadiositySolver::anderson,
+        RadiositySolver::conjugateGradients})
     addRadiosityRow(
         cases, "true error over the guaranteed one, albedo 0.99", std::string(nameOf(solver)),
         [solver](const StabilityContext& c) {
@@ -246,15 +246,14 @@ void addSizes(std::vector<StabilityCase>& cases) {
         });
   // All light from a tiny source to a huge floor arrives: received over emitted flux.
   for (const double side : {1e2, 1e4, 1e5})
-    addRadiosityRow(
-        cases, "light of side 1 over a huge patch, flux that arrives", fmt::format("side {:g}", side),
-        [side](const StabilityContext& c) {
-          Plates p;
-          p.parts.plate({0, 1, 0}, {1, 0, 0}, {0, 0, 1}, p.light);
-          p.parts.plate({0, 0, 0}, {0, 0, side}, {side, 0, 0}, p.black);
-          return Measurement{1.0, irradianceOf(solve(c, p.parts.scene(), settingsFor(0.0)), p.black) * side * side,
-                             0.01};
-        });
+    addRadiosityRow(cases, "light of side 1 over a huge patch, flux that arrives", fmt::format("side {:g}", side),
+                    [side](const StabilityContext& c) {
+                      Plates p;
+                      p.parts.plate({0, 1, 0}, {1, 0, 0}, {0, 0, 1}, p.light);
+                      p.parts.plate({0, 0, 0}, {0, 0, side}, {side, 0, 0}, p.black);
+                      return Measurement{
+                          1.0, irradianceOf(solve(c, p.parts.scene(), settingsFor(0.0)), p.black) * side * side, 0.01};
+                    });
   // The floor of a white furnace cut into strips of 1 : 1000.
   addRadiosityRow(cases, "needles in a closed furnace of albedo 0.9", "1 : 1000", [](const StabilityContext& c) {
     Room room;
@@ -294,22 +293,21 @@ void addPlace(std::vector<StabilityCase>& cases) {
                                          std::exp2(std::round(std::log2(scale))) == scale ? 1e-6 : 2e-3};
                     });
   for (const double distance : {1e3, 1e4, 1e5})
-    addRadiosityRow(
-        cases, "mean of a room far from the origin", fmt::format("{:g} room sides", 0.1 * distance),
-        [=](const StabilityContext& c) {
-          return Measurement{
-              1.0, mean(c, 1.0, glm::dvec3(distance, -0.5 * distance, 0.7 * distance)) / mean(c, 1.0, glm::dvec3(0.0)),
-              5e-3};
-        });
+    addRadiosityRow(cases, "mean of a room far from the origin", fmt::format("{:g} room sides", 0.1 * distance),
+                    [=](const StabilityContext& c) {
+                      return Measurement{1.0,
+                                         mean(c, 1.0, glm::dvec3(distance, -0.5 * distance, 0.7 * distance)) /
+                                             mean(c, 1.0, glm::dvec3(0.0)),
+                                         5e-3};
+                    });
   for (const float emission : {1e-12f, 1e12f})
-    addRadiosityRow(
-        cases, "mean over the light's radiance, against 1x",
-        fmt::format("radiance {:g}", static_cast<double>(emission)), [=](const StabilityContext& c) {
-          return Measurement{
-              1.0,
-              mean(c, 1.0, glm::dvec3(0.0), emission) / static_cast<double>(emission) / mean(c, 1.0, glm::dvec3(0.0)),
-              1e-6};
-        });
+    addRadiosityRow(cases, "mean over the light's radiance, against 1x",
+                    fmt::format("radiance {:g}", static_cast<double>(emission)), [=](const StabilityContext& c) {
+                      return Measurement{1.0,
+                                         mean(c, 1.0, glm::dvec3(0.0), emission) / static_cast<double>(emission) /
+                                             mean(c, 1.0, glm::dvec3(0.0)),
+                                         1e-6};
+                    });
   addRadiosityRow(cases, "zero-area, needle and doubled triangles: mean", "3 more", [=](const StabilityContext& c) {
     Room bad;
     bad.closed = bad.badTriangles = true;

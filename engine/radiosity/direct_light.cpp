@@ -45,9 +45,9 @@ std::vector<Arrival> arrivals(const Scene& scene, const glm::dvec3& point, doubl
 glm::dvec3 radianceOf(const Environment& environment, const glm::dvec3& direction) {
   if (!environment.picture) return glm::dvec3(environment.radiance);
   const Image& picture = *environment.picture;
-  const double turns = 0.5 + (std::atan2(direction.x, -direction.z) + environment.rotation) / (2.0 * kPi);
+  const double rotations = 0.5 + (std::atan2(direction.x, -direction.z) + environment.rotation) / (2.0 * kPi);
   const double v = std::acos(std::clamp(direction.y, -1.0, 1.0)) / kPi;
-  const int x = std::min(static_cast<int>((turns - std::floor(turns)) * picture.width), picture.width - 1);
+  const int x = std::min(static_cast<int>((rotations - std::floor(rotations)) * picture.width), picture.width - 1);
   const int y = std::min(static_cast<int>(v * picture.height), picture.height - 1);
   return glm::dvec3(environment.radiance) * glm::dvec3(picture.at(x, y));
 }

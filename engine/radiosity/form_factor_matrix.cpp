@@ -8,6 +8,13 @@
 
 namespace lucerna {
 
+namespace {
+
+/// A_i F_ij, in the floats in which it is stored.
+float fluxOf(double area, float factor) { return static_cast<float>(area * static_cast<double>(factor)); }
+
+}  // namespace
+
 void FormFactorMatrix::appendRow(std::span<const std::uint32_t> patches, std::span<const float> factors) {
   CHECK(patches.size() == factors.size(), "{} patches, {} factors", patches.size(), factors.size());
   patches_.insert(patches_.end(), patches.begin(), patches.end());
@@ -41,87 +48,117 @@ std::vector<double> FormFactorMatrix::rowSums() const {
   return sums;
 }
 
-double FormFactorMatrix::repair(std::span<const double> areas, std::span<const double> sums,
-                                std::span<const std::uint32_t> sources, double fewPixels) {
+// ---------------------------------------------------------------------------------------------------- repair
+
+/// By counting sort: rows are visited in order, so each column's entries come out in order too.
+FormFactorMatrix::Columns FormFactorMatrix::fluxByColumns(std::span<const double> areas) const {
+  Columns columns;
+  columns.starts.assign(rowCount() + 1, 0);
+  for (const std::uint32_t j : patches_) ++columns.starts[j + 1];
+  for (std::size_t i = 0; i < rowCount(); ++i) columns.starts[i + 1] += columns.starts[i];
+  columns.rows.resize(patches_.size());
+  columns.flux.resize(patches_.size());
+  std::vector<std::size_t> next(columns.starts.begin(), columns.starts.end() - 1);
+  for (std::size_t i = 0; i < rowCount(); ++i)
+    for (std::size_t k = starts_[i]; k < starts_[i + 1]; ++k) {
+      const std::size_t place = next[patches_[k]]++;
+      columns.rows[place] = static_cast<std::uint32_t>(i);
+      columns.flux[place] = fluxOf(areas[i], factors_[k]);
+    }
+  return columns;
+}
+
+/// S_ij = w_ij A_i F_ij + w_ji A_j F_ji with w_ij + w_ji = 1, so that S is symmetric. Exact factors would make both
+/// terms equal. A hemicube stands on the centre of its patch, so F_ij has an error that grows with A_i over A_j:
+/// w_ij = A_j / (A_i + A_j). Closed forms are better than a factor by few pixels, whatever the areas.
+FormFactorMatrix::SymmetricFlux FormFactorMatrix::symmetricFlux(std::span<const double> areas,
+                                                                std::span<const std::uint32_t> sources,
+                                                                double fewPixels) const {
+  const Columns columns = fluxByColumns(areas);
   const auto isSource = [&](std::size_t i) { return !sources.empty() && sources[i] != 0; };
-  const std::size_t n = rowCount();
-  // The transposed matrix; its rows come out in order, as the rows are visited in order.
-  std::vector<std::size_t> starts(n + 1, 0);
-  for (const std::uint32_t j : patches_) ++starts[j + 1];
-  for (std::size_t i = 0; i < n; ++i) starts[i + 1] += starts[i];
-  std::vector<std::uint32_t> from(patches_.size());
-  std::vector<float> flux(patches_.size());  // A_i F_ij
-  {
-    std::vector<std::size_t> at(starts.begin(), starts.end() - 1);
-    for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t k = starts_[i]; k < starts_[i + 1]; ++k) {
-        const std::size_t place = at[patches_[k]]++;
-        from[place] = static_cast<std::uint32_t>(i);
-        flux[place] = static_cast<float>(areas[i] * static_cast<double>(factors_[k]));
-      }
-  }
-  FormFactorMatrix mean;  // of A F and its transpose
-  std::vector<bool> known(n);  // whether the row sum is known: closed rows
+  SymmetricFlux symmetric;
   std::vector<std::uint32_t> patches;
   std::vector<float> values;
-  for (std::size_t i = 0; i < n; ++i) {
+  for (std::size_t i = 0; i < rowCount(); ++i) {
     patches.clear();
     values.clear();
-    double whole = 0.0;
-    std::size_t a = starts_[i], b = starts[i];
-    while (a < starts_[i + 1] || b < starts[i + 1]) {
-      const std::uint32_t ja = a < starts_[i + 1] ? patches_[a] : ~0u, jb = b < starts[i + 1] ? from[b] : ~0u,
-                          j = std::min(ja, jb);
-      // In float as in the transposed copy, and in the order of patches, so that S_ij and S_ji have the same bits.
-      const double own = ja == j ? static_cast<double>(static_cast<float>(areas[i] * static_cast<double>(factors_[a])))
-                                 : 0.0,
-                   other = jb == j ? static_cast<double>(flux[b]) : 0.0;
-      // Weight of the row's own entry. Both sums add the same numbers in the same order.
-      double weight = areas[j] / (areas[i] + areas[j]), against = areas[i] / (areas[i] + areas[j]);
+    double rowSum = 0.0;
+    // Row i and column i are merged; each is in order.
+    std::size_t a = starts_[i], b = columns.starts[i];
+    const std::size_t endA = starts_[i + 1], endB = columns.starts[i + 1];
+    while (a < endA || b < endB) {
+      const std::uint32_t inRow = a < endA ? patches_[a] : ~0u, inColumn = b < endB ? columns.rows[b] : ~0u,
+                          j = std::min(inRow, inColumn);
+      const double own = inRow == j ? static_cast<double>(fluxOf(areas[i], factors_[a])) : 0.0,
+                   other = inColumn == j ? static_cast<double>(columns.flux[b]) : 0.0;
+      double ownWeight = areas[j] / (areas[i] + areas[j]), otherWeight = areas[i] / (areas[i] + areas[j]);
       if (isSource(i) != isSource(j) && std::max(own, other) < fewPixels * areas[isSource(i) ? i : j])
-        weight = isSource(j) ? 1.0 : 0.0, against = 1.0 - weight;
-      const double sum = i < j ? weight * own + against * other : against * other + weight * own;
-      whole += sum;
-      a += ja == j;
-      b += jb == j;
+        ownWeight = isSource(j) ? 1.0 : 0.0, otherWeight = 1.0 - ownWeight;
+      // The same order for S_ij and S_ji, so that they have the same bits.
+      const double mean = i < j ? ownWeight * own + otherWeight * other : otherWeight * other + ownWeight * own;
+      rowSum += mean;
+      a += inRow == j;
+      b += inColumn == j;
       patches.push_back(j);
-      values.push_back(static_cast<float>(sum));
+      values.push_back(static_cast<float>(mean));
     }
-    mean.appendRow(patches, values);
-    known[i] = sums[i] >= 1.0 || whole > areas[i];
+    symmetric.matrix.appendRow(patches, values);
+    symmetric.rowSums.push_back(rowSum);
   }
-  flux = {};
-  from = {};
-  // d_i sum_j S_ij d_j = A_i if the sum is known, else d_i = 1.
-  std::vector<double> d(n, 1.0), next(n);
-  double worst = 0.0;
-  constexpr int kMost = 200;
+  return symmetric;
+}
+
+/// Balances a symmetric matrix S: finds d > 0 with d_i sum_j S_ij d_j = A_i for closed rows, and leaves d_i = 1 for
+/// open ones. The step d_i <- sqrt(d_i A_i / sum_j S_ij d_j) is the geometric mean of d and Sinkhorn's next d
+/// [Sinkhorn1964], which would alternate between two vectors on a symmetric matrix [KnightRuizUcar2014].
+FormFactorMatrix::Scaling FormFactorMatrix::symmetricScaling(std::span<const double> areas,
+                                                             const std::vector<bool>& closed) const {
+  constexpr int kMostSteps = 200;
   constexpr double kEnough = 1e-9;
-  for (int step = 0; step < kMost; ++step) {
-    worst = 0.0;
-    for (std::size_t i = 0; i < n; ++i) {
+  Scaling scaling{std::vector<double>(rowCount(), 1.0), 0.0};
+  std::vector<double>& d = scaling.d;
+  std::vector<double> next = d;
+  for (int step = 0; step < kMostSteps; ++step) {
+    scaling.error = 0.0;
+    for (std::size_t i = 0; i < rowCount(); ++i) {
       next[i] = d[i];
-      if (!known[i]) continue;
+      if (!closed[i]) continue;
       double sum = 0.0;
-      for (std::size_t k = mean.starts_[i]; k < mean.starts_[i + 1]; ++k)
-        sum += static_cast<double>(mean.factors_[k]) * d[mean.patches_[k]];
+      for (std::size_t k = starts_[i]; k < starts_[i + 1]; ++k)
+        sum += static_cast<double>(factors_[k]) * d[patches_[k]];
       if (sum <= 0.0) continue;
       next[i] = std::sqrt(d[i] * areas[i] / sum);
-      worst = std::max(worst, std::abs(areas[i] / (d[i] * sum) - 1.0));
+      scaling.error = std::max(scaling.error, std::abs(areas[i] / (d[i] * sum) - 1.0));
     }
-    if (worst < kEnough) break;
+    if (scaling.error < kEnough) break;
     d = next;
   }
-  onAllCores(n, [&](std::size_t begin, std::size_t end) {
+  return scaling;
+}
+
+/// F_ij = d_i S_ij d_j / A_i. Rounding F to floats changes row sums by some 1e-7, which a white room would amplify by
+/// 1 / (1 - rho): the rows' scales, in double, take that back.
+void FormFactorMatrix::turnIntoFactors(std::span<const double> areas, const std::vector<double>& d,
+                                       const std::vector<bool>& closed) {
+  onAllCores(rowCount(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      for (std::size_t k = mean.starts_[i]; k < mean.starts_[i + 1]; ++k)
-        mean.factors_[k] =
-            static_cast<float>(static_cast<double>(mean.factors_[k]) * d[i] * d[mean.patches_[k]] / areas[i]);
+      for (std::size_t k = starts_[i]; k < starts_[i + 1]; ++k)
+        factors_[k] = static_cast<float>(static_cast<double>(factors_[k]) * d[i] * d[patches_[k]] / areas[i]);
   });
-  *this = std::move(mean);
-  const std::vector<double> are = rowSums();
-  for (std::size_t i = 0; i < n; ++i) scales_[i] = are[i] > 0.0 && (known[i] || are[i] > 1.0) ? 1.0 / are[i] : 1.0;
-  return worst;
+  const std::vector<double> sums = rowSums();
+  for (std::size_t i = 0; i < rowCount(); ++i)
+    scales_[i] = sums[i] > 0.0 && (closed[i] || sums[i] > 1.0) ? 1.0 / sums[i] : 1.0;
+}
+
+double FormFactorMatrix::repair(std::span<const double> areas, std::span<const double> sums,
+                                std::span<const std::uint32_t> sources, double fewPixels) {
+  SymmetricFlux symmetric = symmetricFlux(areas, sources, fewPixels);
+  std::vector<bool> closed(rowCount());
+  for (std::size_t i = 0; i < rowCount(); ++i) closed[i] = sums[i] >= 1.0 || symmetric.rowSums[i] > areas[i];
+  const Scaling scaling = symmetric.matrix.symmetricScaling(areas, closed);
+  *this = std::move(symmetric.matrix);
+  turnIntoFactors(areas, scaling.d, closed);
+  return scaling.error;
 }
 
 double FormFactorMatrix::reciprocityError(std::span<const double> areas) const {

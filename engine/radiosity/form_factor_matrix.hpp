@@ -5,7 +5,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -21,9 +20,6 @@ class FormFactorMatrix {
   void appendRow(std::span<const std::uint32_t> patches, std::span<const float> factors);
   std::size_t rowCount() const { return starts_.size() - 1; }
   std::size_t entryCount() const { return patches_.size(); }
-  std::size_t bytes() const {
-    return patches_.size() * (sizeof(std::uint32_t) + sizeof(float)) + starts_.size() * sizeof(std::size_t);
-  }
 
   struct Row {
     std::span<const std::uint32_t> patches;
@@ -36,23 +32,44 @@ class FormFactorMatrix {
   void multiply(std::span<const glm::dvec3> x, std::span<glm::dvec3> y) const;
   std::vector<double> rowSums() const;
 
-  /// Repairs errors of hemicubes: A_i F_ij = A_j F_ji for all pairs, by the mean of both, in which the smaller patch's
-  /// factor is weighted by the larger one's area: its centre represents it, and what it sees covers pixels. Closed
-  /// rows, `sums[i]` = 1, then sum to 1; open rows stay unconstrained: forcing a wrong near-field sum would move the
-  /// error to far entries. By a symmetric scaling [Sinkhorn1964], [KnightRuizUcar2014]. Returns the largest relative
-  /// error of a sum before the last rounding, which is then corrected row by row in double (reciprocity holds to the
-  /// floats' 1e-7), since a white room amplifies it by 1 / (1 - rho). `sources`, if given, marks columns whose factors
-  /// are closed forms: what a source sees below `fewPixels` of its hemisphere is taken from the other row.
+  /// Repairs errors of hemicubes. Afterwards A_i F_ij = A_j F_ji for all pairs, to the floats' 1e-7, and closed rows,
+  /// whose `sums[i]` is 1, sum to 1 in double. Open rows stay unconstrained: forcing a wrong near-field sum would move
+  /// the error to far entries. `sources`, if given, marks columns whose factors are closed forms: a source's factor
+  /// below `fewPixels` of its hemisphere is taken from the other row. Returns the largest relative error of a closed
+  /// row's sum before the last rounding. Symmetric scaling [Sinkhorn1964], [KnightRuizUcar2014] of a weighted mean.
   double repair(std::span<const double> areas, std::span<const double> sums,
                 std::span<const std::uint32_t> sources = {}, double fewPixels = 0.0);
   /// Largest |A_i F_ij - A_j F_ji| over the mean of A_i F_ij.
   double reciprocityError(std::span<const double> areas) const;
 
  private:
+  /// A_i F_ij by columns j: `rows` has each entry's i.
+  struct Columns {
+    std::vector<std::size_t> starts;
+    std::vector<std::uint32_t> rows;
+    std::vector<float> flux;
+  };
+  Columns fluxByColumns(std::span<const double> areas) const;
+  struct SymmetricFlux;
+  SymmetricFlux symmetricFlux(std::span<const double> areas, std::span<const std::uint32_t> sources,
+                              double fewPixels) const;
+  struct Scaling {
+    std::vector<double> d;
+    double error;  ///< largest relative error of a closed row's sum
+  };
+  Scaling symmetricScaling(std::span<const double> areas, const std::vector<bool>& closed) const;
+  void turnIntoFactors(std::span<const double> areas, const std::vector<double>& d, const std::vector<bool>& closed);
+
   std::vector<std::size_t> starts_;
   std::vector<std::uint32_t> patches_;
   std::vector<float> factors_;
   std::vector<double> scales_;
+};
+
+/// The mean of A F and its transpose.
+struct FormFactorMatrix::SymmetricFlux {
+  FormFactorMatrix matrix;
+  std::vector<double> rowSums;  ///< before rounding to floats
 };
 
 }  // namespace lucerna

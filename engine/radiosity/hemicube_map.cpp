@@ -33,14 +33,9 @@ std::vector<double> deltaFormFactors(int n, DeltaMap map) {
         const double x = column * side - 1.0, y = row * side - (face == 0 ? 1.0 : 0.0);
         const double a = x + 0.5 * side, b = y + 0.5 * side, r2 = 1.0 + a * a + b * b;
         const auto antiderivative = face == 0 ? fullFace : halfFace;
-        switch (map) {
-          case DeltaMap::exact:
-            factors.push_back(antiderivative(x + side, y + side) - antiderivative(x, y + side) -
-                              antiderivative(x + side, y) + antiderivative(x, y));
-            break;
-          case DeltaMap::centre: factors.push_back((face == 0 ? 1.0 : b) / (kPi * r2 * r2) * side * side); break;
-          case DeltaMap::published: factors.push_back((face == 0 ? 1.0 : b) / r2); break;
-        }
+        factors.push_back(map == DeltaMap::exact ? antiderivative(x + side, y + side) - antiderivative(x, y + side) -
+                                                       antiderivative(x + side, y) + antiderivative(x, y)
+                                                 : (face == 0 ? 1.0 : b) / r2);
       }
   if (map == DeltaMap::published) {
     const double sum = sumOverHemicube(factors, n);

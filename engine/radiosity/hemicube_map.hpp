@@ -6,8 +6,7 @@
 namespace lucerna {
 
 enum class DeltaMap {
-  exact,  ///< cos cos' / (pi r^2) integrated over the pixel in closed form; the five faces sum to 1
-  centre,  ///< the same at the pixel's centre times its area [CohenGreenberg1985]: off by 0.54 / N^2 in all
+  exact,  ///< cos cos' / (pi r^2) [CohenGreenberg1985] integrated over the pixel; the five faces sum to 1
   published,  ///< 1/r^2 (full face) and b/r^2 (half faces), r^2 = 1 + a^2 + b^2, divided by the sum over the five
               ///< [RAD2008]
 };

@@ -2,7 +2,6 @@
 
 #include "base/parallel.hpp"
 #include "gl/pass.hpp"
-#include "radiosity/form_factor_matrix.hpp"
 #include "scene/triangle_parts.hpp"
 
 #include <algorithm>
@@ -22,7 +21,7 @@ constexpr float kOpen = 0.3f;
 constexpr GLuint kNothing = 0, kBack = ~0u;
 
 /// Input of hidden_parts.comp.
-struct Receiver {
+struct TestedPatch {
   glm::vec4 a, b, c, normal;
 };
 
@@ -33,24 +32,24 @@ std::vector<GLuint> seenFrom(const gl::Program& program, const RayScene& rays, c
   seen.reserve(patches.size() * kParts * raysEach);
   const std::size_t patchesEach = kRaysASubmission / (kParts * raysEach);
   for (std::size_t first = 0; first < patches.size(); first += patchesEach) {
-    std::vector<Receiver> receivers;
+    std::vector<TestedPatch> tested;
     for (const std::uint32_t p : patches.subspan(first, std::min(patchesEach, patches.size() - first))) {
       auto corners = mesh.corners(mesh.patches[p]);
       glm::dvec3 largest(0.0);
       for (glm::dvec3& corner : corners) corner -= rays.origin(), largest = glm::max(largest, glm::abs(corner));
-      receivers.push_back({glm::vec4(glm::vec3(corners[0]), static_cast<float>(p)),
-                           glm::vec4(glm::vec3(corners[1]), 0.0f), glm::vec4(glm::vec3(corners[2]), 0.0f),
-                           glm::vec4(glm::vec3(mesh.patches[p].faceNormal),
-                                     static_cast<float>(std::max({largest.x, largest.y, largest.z})))});
+      tested.push_back({glm::vec4(glm::vec3(corners[0]), static_cast<float>(p)), glm::vec4(glm::vec3(corners[1]), 0.0f),
+                        glm::vec4(glm::vec3(corners[2]), 0.0f),
+                        glm::vec4(glm::vec3(mesh.patches[p].faceNormal),
+                                  static_cast<float>(std::max({largest.x, largest.y, largest.z})))});
     }
-    const std::size_t rayCount = receivers.size() * kParts * raysEach;
-    const gl::Buffer in("hidden parts receivers", receivers.size() * sizeof(Receiver), receivers.data(),
+    const std::size_t rayCount = tested.size() * kParts * raysEach;
+    const gl::Buffer in("hidden parts patches", tested.size() * sizeof(TestedPatch), tested.data(),
                         gl::Usage::streamDraw);
     const gl::Buffer out("hidden parts seen", rayCount * sizeof(GLuint), nullptr, gl::Usage::dynamicRead);
     {
       const gl::ComputePass pass("hidden parts");
       program.use();
-      program.set("recordCount", static_cast<int>(receivers.size()));
+      program.set("testedCount", static_cast<int>(tested.size()));
       program.set("raysEach", static_cast<int>(raysEach));
       rays.bind();
       in.bindStorage(1);

@@ -309,25 +309,4 @@ Scene sceneOf(const RadiosityMesh& mesh) {
   return scene;
 }
 
-std::size_t countTJunctions(const RadiosityMesh& mesh) {
-  std::vector<bool> used(mesh.points.size(), false);
-  for (const Patch& patch : mesh.patches)
-    for (const std::uint32_t p : patch.point) used[p] = true;
-  std::size_t count = 0;
-  for (std::size_t p = 0; p < mesh.points.size(); ++p) {
-    bool inside = false;
-    for (std::size_t i = 0; used[p] && i < mesh.patches.size() && !inside; ++i) {
-      const auto c = mesh.corners(mesh.patches[i]);
-      for (std::size_t k = 0; k < 3; ++k) {
-        if (mesh.patches[i].point[k] == p || mesh.patches[i].point[(k + 1) % 3] == p) continue;
-        const glm::dvec3 along = c[(k + 1) % 3] - c[k], to = mesh.points[p] - c[k];
-        const double t = glm::dot(to, along) / glm::dot(along, along);
-        if (t > 1e-6 && t < 1.0 - 1e-6 && glm::length(to - t * along) < 1e-6 * glm::length(along)) inside = true;
-      }
-    }
-    count += inside;
-  }
-  return count;
-}
-
 }  // namespace lucerna

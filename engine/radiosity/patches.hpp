@@ -70,7 +70,4 @@ RadiosityMesh refined(const Scene& scene, const RadiosityMesh& mesh, const Patch
 /// Patches as a separate scene, in order and with one material, for a hierarchy.
 Scene sceneOf(const RadiosityMesh& mesh);
 
-/// Vertices inside another patch's edge, where light leaks through cracks. Each counts once; quadratic, for tests.
-std::size_t countTJunctions(const RadiosityMesh& mesh);
-
 }  // namespace lucerna

@@ -4,7 +4,7 @@
 // damaged block ends the file: it and everything after it is recomputed.
 #pragma once
 
-#include "radiosity/hemicubes.hpp"
+#include "radiosity/form_factor_rows.hpp"
 
 #include <cstdint>
 #include <filesystem>

@@ -36,11 +36,7 @@ RadiosityDeviations publishedRadiosity() {
 
 void applyRadiosityDeviation(RadiosityDeviations& deviations, std::string_view assignment) {
   const auto equals = assignment.find('=');
-  std::string name(assignment.substr(0, equals));
-  if (name.starts_with("rad.")) {  // its former spelling
-    const std::string former = std::exchange(name, "radiosity" + name.substr(3));
-    logWarning("--deviation {}: now written {}", former, name);
-  }
+  const std::string name(assignment.substr(0, equals));
   const std::string_view value = equals == std::string_view::npos ? "" : assignment.substr(equals + 1);
   if (value != "on" && value != "off") throwBadInput("--deviation {}: expected NAME=on or NAME=off", assignment);
   const auto found =

@@ -15,9 +15,9 @@
 namespace lucerna {
 
 /// How the linear system is solved. The original has the first two.
-enum class RadiositySolver { automatic, jacobi, gaussSeidel, progressive, overshoot, anderson, conjugateGradients };
-constexpr std::array<std::string_view, 7> namesOf(RadiositySolver) {
-  return {"auto", "jacobi", "gauss-seidel", "progressive", "overshoot", "anderson", "cg"};
+enum class RadiositySolver { automatic, jacobi, gaussSeidel, progressive, anderson, conjugateGradients };
+constexpr std::array<std::string_view, 6> namesOf(RadiositySolver) {
+  return {"auto", "jacobi", "gauss-seidel", "progressive", "anderson", "cg"};
 }
 
 /// Deviations of the published program; false is correct.
@@ -29,7 +29,7 @@ struct RadiosityDeviations {
   bool noNearField = false;  ///< no correction closer than the near plane or a patch's own size
 };
 
-/// A named switch, as in engine/settings/deviations.hpp. Names begin with "radiosity.", once "rad.".
+/// A named switch, as in engine/settings/deviations.hpp. Names begin with "radiosity.".
 struct RadiosityDeviation {
   const char* name;
   const char* meaning;

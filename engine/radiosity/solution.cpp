@@ -1,25 +1,17 @@
 #include "radiosity/solution.hpp"
 
-#include "base/clock.hpp"
 #include "base/error.hpp"
-#include "base/files.hpp"
-#include "base/hash.hpp"
-#include "base/log.hpp"
-#include "radiosity/direct_light.hpp"
-#include "radiosity/form_factor_matrix.hpp"
+#include "radiosity/hemicubes.hpp"
 #include "radiosity/hidden_parts.hpp"
+#include "radiosity/mesh_solver.hpp"
 #include "radiosity/row_file.hpp"
-#include "scene/needs.hpp"
 #include "scene/place.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <map>
 #include <memory>
-#include <numbers>
-#include <numeric>
-#include <unistd.h>
+#include <optional>
 #include <unordered_map>
 
 namespace lucerna {
@@ -27,273 +19,6 @@ namespace lucerna {
 namespace {
 
 constexpr double kEdges = 12.0;  // default: number of longest edges that span the scene
-// For a form factor, its transposed copy and their mean, during the repair.
-constexpr std::size_t kBytesPerEntry = 32;
-
-std::size_t freeMemory() {
-  return static_cast<std::size_t>(std::max(sysconf(_SC_AVPHYS_PAGES), 1L)) *
-         static_cast<std::size_t>(std::max(sysconf(_SC_PAGESIZE), 1L));
-}
-
-std::uint64_t rowsFingerprint(const RadiosityMesh& mesh, const HemicubeSettings& s) {
-  Hash f;
-  f.add(std::uint32_t{2});  // version of how rows are computed
-  for (const Patch& patch : mesh.patches) {
-    for (const glm::dvec3& corner : mesh.corners(patch)) f.add(corner);
-    f.add(patch.emission != glm::dvec3(0.0));
-    f.add(patch.hidden);
-  }
-  f.add(s.visibility);
-  f.add(s.resolution);
-  f.add(s.map);
-  f.add(s.randomRoll);
-  f.add(s.seed);
-  if (s.rolls != 1) f.add(s.rolls);
-  f.add(s.exactPixels);
-  f.add(s.nearDistance);
-  f.add(s.mostParts);
-  return f.value();
-}
-
-void append(FormFactorMatrix& matrix, const FormFactorRows& rows) {
-  std::size_t at = 0;
-  for (const std::uint32_t count : rows.counts) {
-    matrix.appendRow(std::span(rows.patches).subspan(at, count), std::span(rows.factors).subspan(at, count));
-    at += count;
-  }
-}
-
-/// Solves one mesh: direct light, form factors, system. The results go into the solution.
-class MeshSolver {
- public:
-  MeshSolver(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
-             const RadiositySolutionSettings& settings, int refinement, std::filesystem::path checkpoint,
-             const std::function<bool(const RadiosityStage&)>& onStage, RadiositySolution& solution)
-      : context_(context),
-        programs_(programs),
-        scene_(scene),
-        settings_(settings),
-        refinement_(refinement),
-        checkpoint_(std::move(checkpoint)),
-        onStage_(onStage),
-        solution_(solution),
-        count_(solution.mesh.patches.size()) {}
-
-  void solve() {
-    stage(RadiosityStage::Kind::direct, 0);
-    const RayScene& rays = rays_.emplace(sceneOf(solution_.mesh), context_.capabilities());
-    if (!settings_.deviations.centroid) cutHiddenParts(programs_, rays, solution_.mesh);
-    solution_.direct = directLight(programs_, rays, scene_, solution_.mesh);
-    solution_.fromSky = analyse(scene_).environment ? skyLight(programs_, rays, scene_, solution_.mesh)
-                                                    : std::vector<glm::dvec3>(count_, glm::dvec3(0.0));
-    HemicubeSettings way = settings_.hemicubes;
-    way.visibility = visibility();
-    hemicubes_.emplace(programs_, context_.capabilities(), solution_.mesh, way, &rays);
-    makeRows();
-
-    const Clock::time_point start = Clock::now();
-    RadiositySystem system = balances();
-    if (kept_) keptProduct(system);
-    else streamedProduct(system);
-    shareOfEmitters(system);
-    solveSystem(system);
-    solution_.solveSeconds += secondsSince(start);
-  }
-
- private:
-  /// Reports progress; false: the caller wants it to stop.
-  bool stage(RadiosityStage::Kind kind, std::size_t done, const RadiosityProgress& progress = {}) const {
-    return !onStage_ || onStage_({kind, refinement_, done, count_, progress});
-  }
-  [[noreturn]] void stop() const {
-    throw Stopped(fmt::format(
-        "stopped after {} of {} hemicubes{}", solution_.fronts.size(), count_,
-        checkpoint_.empty() ? std::string() : fmt::format("; the same command resumes from {}", checkpoint_.string())));
-  }
-
-  // ---------------------------------------------------------------------------------------------- form factors
-
-  /// The visibility method. Rows by different methods differ in their last bits, so a checkpoint is continued with the
-  /// method it was begun with, and a refinement uses the method of the previous mesh.
-  HemicubeVisibility visibility() const {
-    if (refinement_ > 0) return solution_.visibility;
-    HemicubeSettings way = settings_.hemicubes;
-    if (way.visibility != HemicubeVisibility::automatic || checkpoint_.empty()) return way.visibility;
-    const std::optional<std::uint64_t> begun = RowFile::fingerprintOf(checkpoint_);
-    for (const HemicubeVisibility one :
-         {HemicubeVisibility::raster, HemicubeVisibility::rays, HemicubeVisibility::itemBuffer}) {
-      way.visibility = one;
-      if (begun && rowsFingerprint(solution_.mesh, way) == *begun) return one;
-    }
-    return HemicubeVisibility::automatic;
-  }
-
-  /// Rows of form factors: reads those of the checkpoint, then computes the rest and appends them to it.
-  void makeRows() {
-    solution_.fronts.clear();
-    solution_.backs.clear();
-    if (!checkpoint_.empty()) {
-      HemicubeSettings way = settings_.hemicubes;
-      way.visibility = hemicubes_->visibility();
-      file_ = std::make_unique<RowFile>(checkpoint_, rowsFingerprint(solution_.mesh, way),
-                                        static_cast<std::uint32_t>(count_),
-                                        [&](const FormFactorRows& rows) { take(rows); });
-    }
-    const Clock::time_point start = Clock::now();
-    const std::size_t from = solution_.fronts.size();
-    std::size_t computed = 0;
-    bool stopped = false;
-    const auto keep = [&](const FormFactorRows& rows) {
-      take(rows);
-      if (file_) file_->append(rows);
-    };
-    hemicubes_->stream(static_cast<int>(from), static_cast<int>(count_), keep, [&](int done) {
-      solution_.hemicubes += static_cast<std::size_t>(done) - from - computed;
-      computed = static_cast<std::size_t>(done) - from;
-      stopped = !stage(RadiosityStage::Kind::formFactors, static_cast<std::size_t>(done));
-      return !stopped;
-    });
-    solution_.hemicubeSeconds += secondsSince(start);
-    solution_.keptRows = kept_;
-    solution_.visibility = hemicubes_->visibility();
-    if (stopped) stop();
-  }
-
-  /// Takes the next rows into the matrix, as long as all of it will fit in memory.
-  void take(const FormFactorRows& rows) {
-    if (kept_) append(matrix_, rows);
-    auto factor = rows.factors.begin();
-    for (const std::uint32_t count : rows.counts)
-      rowSums_.push_back(std::accumulate(factor, factor + count, 0.0)), factor += count;
-    solution_.fronts.insert(solution_.fronts.end(), rows.fronts.begin(), rows.fronts.end());
-    solution_.backs.insert(solution_.backs.end(), rows.backs.begin(), rows.backs.end());
-    const double perPatch = static_cast<double>(matrix_.entryCount()) / static_cast<double>(solution_.fronts.size()),
-                 bytes = perPatch * static_cast<double>(count_) * static_cast<double>(kBytesPerEntry);
-    if (!kept_ || bytes <= static_cast<double>(memory_)) return;
-    logWarning(
-        "radiosity: the form factors of {} patches need about {} MiB, {} are available: they are {} for each product",
-        count_, static_cast<std::size_t>(bytes) >> 20, memory_ >> 20,
-        checkpoint_.empty() ? "recomputed" : "read from " + checkpoint_.string());
-    kept_ = false;
-    matrix_ = {};
-  }
-
-  // ---------------------------------------------------------------------------------------------- system
-
-  /// Areas, reflectance and emission of all patches, and the required sum of each row of form factors.
-  RadiositySystem balances() {
-    RadiositySystem system;
-    for (std::size_t i = 0; i < count_; ++i) {
-      const Patch& patch = solution_.mesh.patches[i];
-      system.areas.push_back(patch.area);
-      system.reflectance.push_back(patch.reflectance);
-      system.emission.push_back(patch.emission + patch.reflectance * (solution_.direct[i] + solution_.fromSky[i]));
-      // Shares are counted in units of 2^-28, each rounded: a row within 1e-5 of closed is closed. An open row sums to
-      // its factors: closed forms include lights that no pixel meets.
-      sums_.push_back(static_cast<double>(solution_.fronts[i]) > 1.0 - 1e-5 ? 1.0 : std::min(1.0, rowSums_[i]));
-    }
-    return system;
-  }
-
-  /// The product with the matrix in memory, made reciprocal and with corrected row sums.
-  void keptProduct(RadiositySystem& system) {
-    double off = 0.0;
-    for (std::size_t i = 0; i < count_; ++i) off += std::abs(rowSums_[i] - sums_[i]);
-    solution_.repaired = off / static_cast<double>(count_);
-    if (settings_.repair) {
-      const double resolution = settings_.hemicubes.resolution,
-                   pixel = 4.0 / (std::numbers::pi * resolution * resolution);  // the largest delta form factor
-      matrix_.repair(system.areas, sums_, hemicubes_->smallSources(), settings_.hemicubes.exactPixels * pixel);
-      system.reciprocal = true;
-    }
-    system.matrix = &matrix_;
-    system.rowSums = matrix_.rowSums();
-    solution_.entries = matrix_.entryCount();
-    system.product = [this](auto x, auto y) { matrix_.multiply(x, y); };
-  }
-
-  /// Each product reads all rows from the checkpoint, or draws all hemicubes again if there is none. Of the repair,
-  /// only the row sums are applied; reciprocity stays as the hemicubes left it.
-  void streamedProduct(RadiositySystem& system) {
-    system.rowSums = settings_.repair ? sums_ : rowSums_;
-    system.product = [this](std::span<const glm::dvec3> x, std::span<glm::dvec3> y) {
-      const auto multiply = [&](const FormFactorRows& rows) {
-        std::size_t at = 0, row = static_cast<std::size_t>(rows.first);
-        for (const std::uint32_t count : rows.counts) {
-          glm::dvec3 sum(0.0);
-          for (const std::size_t end = at + count; at < end; ++at)
-            sum += static_cast<double>(rows.factors[at]) * x[rows.patches[at]];
-          y[row] = settings_.repair && rowSums_[row] > 0.0 ? sum * (sums_[row] / rowSums_[row]) : sum;
-          ++row;
-        }
-      };
-      if (file_) return file_->forEach(multiply);
-      for (std::size_t first = 0; first < count_;) {
-        const std::size_t batch = std::min(count_ - first, static_cast<std::size_t>(hemicubes_->batchSize()));
-        const FormFactorRows rows = hemicubes_->rows(static_cast<int>(first), static_cast<int>(batch));
-        multiply(rows);
-        first += rows.counts.size();
-        solution_.hemicubes += rows.counts.size();
-        if (!stage(RadiosityStage::Kind::formFactors, first)) stop();
-      }
-    };
-  }
-
-  /// Separates light directly from emitters, so that a view can replace it with sharper shadows.
-  void shareOfEmitters(RadiositySystem& system) {
-    solution_.fromEmitters.assign(count_, glm::dvec3(0.0));
-    std::vector<glm::dvec3> emission;
-    for (const Patch& patch : solution_.mesh.patches) emission.push_back(patch.emission);
-    if (std::ranges::all_of(emission, [](const glm::dvec3& e) { return e == glm::dvec3(0.0); })) return;
-    system.product(emission, solution_.fromEmitters);
-    // Without other lamps, solvers begin with this very product. Reuse it, since it is expensive if rows are
-    // recomputed.
-    system.product = [this, emission = std::move(emission), product = std::move(system.product)](
-                         std::span<const glm::dvec3> x, std::span<glm::dvec3> y) {
-      if (std::ranges::equal(x, emission)) std::ranges::copy(solution_.fromEmitters, y.begin());
-      else product(x, y);
-    };
-  }
-
-  void solveSystem(const RadiositySystem& system) {
-    bool stopped = false;
-    SolverSettings solver;
-    solver.solver = settings_.solver;
-    solver.error = settings_.error;
-    solver.mostProducts = settings_.mostProducts;
-    solver.onStep = [&](const RadiosityProgress& p) {
-      stopped = !stage(RadiosityStage::Kind::solving, count_, p);
-      return !stopped;
-    };
-    RadiositySolved solved = solveRadiosity(system, solver);
-    if (stopped) stop();
-    solution_.exitance = std::move(solved.exitance);
-    solution_.irradiance = std::move(solved.irradiance);
-    for (std::size_t i = 0; i < count_; ++i) solution_.irradiance[i] += solution_.direct[i] + solution_.fromSky[i];
-    solution_.progress = solved.progress;
-    solution_.solver = solved.solver;
-    solution_.reached = solved.reached;
-  }
-
-  const gl::Context& context_;
-  gl::ProgramLibrary& programs_;
-  const Scene& scene_;
-  const RadiositySolutionSettings& settings_;
-  const int refinement_;
-  const std::filesystem::path checkpoint_;
-  const std::function<bool(const RadiosityStage&)>& onStage_;
-  RadiositySolution& solution_;
-  const std::size_t count_;  ///< patches
-
-  std::optional<RayScene> rays_;  ///< for the patches
-  std::optional<Hemicubes> hemicubes_;
-  std::unique_ptr<RowFile> file_;  ///< the checkpoint
-  const std::size_t memory_ = settings_.memoryBytes ? settings_.memoryBytes : freeMemory() / 2;
-  bool kept_ = true;  ///< whether the matrix is in memory
-  FormFactorMatrix matrix_;
-  std::vector<double> rowSums_;  ///< from the hemicubes
-  std::vector<double> sums_;  ///< required
-};
 
 double mean3(const glm::dvec3& v) { return (v.x + v.y + v.z) / 3.0; }
 
@@ -307,8 +32,8 @@ RadiosityMesh refineSteep(const Scene& scene, const RadiositySolution& solution,
     area += mesh.patches[i].area;
   }
   mean /= area;
-  std::unordered_map<std::uint64_t, std::pair<std::uint32_t, std::size_t>>
-      across;  // light vertices of an edge, mapped to patch and edge
+  // Light vertices of an edge, mapped to patch and edge.
+  std::unordered_map<std::uint64_t, std::pair<std::uint32_t, std::size_t>> across;
   std::vector<bool> steepPatch(mesh.patches.size(), false);
   for (std::size_t i = 0; i < mesh.patches.size(); ++i)
     for (std::size_t k = 0; k < 3; ++k) {
@@ -427,20 +152,27 @@ RadiositySolution solveScene(const gl::Context& context, gl::ProgramLibrary& pro
   const RadiositySolutionSettings settings = withDeviations(asked);
   const PatchSettings patches = patchesOf(scene, settings);
   const double largest = largestExtent(scene);
-  RadiositySolution solution;
-  solution.deviations = settings.deviations;
-  solution.settings = textOf(asked);
-  solution.mesh = makePatches(scene, patches);
   const double shortest =
       (patches.longestEdge > 0.0 ? patches.longestEdge : largest / kEdges) / std::pow(2.0, settings.refinements + 1);
+  RadiositySolution solution;
+  RadiosityMesh mesh = makePatches(scene, patches);
+  HemicubeVisibility visibility = settings.hemicubes.visibility;
   for (int refinement = 0;; ++refinement) {
-    MeshSolver(context, programs, scene, settings, refinement, checkpointOf(checkpoint, refinement), onStage, solution)
-        .solve();
-    if (refinement >= settings.refinements) return solution;
-    RadiosityMesh finer = refineSteep(scene, solution, patches, settings.steep, shortest);
-    if (finer.patches.size() == solution.mesh.patches.size()) return solution;
-    solution.mesh = std::move(finer);
+    RadiositySolution next =
+        solveMesh({context, programs, scene, settings, onStage, refinement, checkpointOf(checkpoint, refinement)},
+                  std::move(mesh), visibility);
+    next.hemicubes += solution.hemicubes;
+    next.hemicubeSeconds += solution.hemicubeSeconds;
+    next.solveSeconds += solution.solveSeconds;
+    solution = std::move(next);
+    visibility = solution.visibility;  // the same for all meshes
+    if (refinement >= settings.refinements) break;
+    mesh = refineSteep(scene, solution, patches, settings.steep, shortest);
+    if (mesh.patches.size() == solution.mesh.patches.size()) break;
   }
+  solution.deviations = settings.deviations;
+  solution.settings = textOf(asked);
+  return solution;
 }
 
 namespace {

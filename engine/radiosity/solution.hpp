@@ -8,7 +8,7 @@
 
 #include "gl/context.hpp"
 #include "gl/program.hpp"
-#include "radiosity/hemicubes.hpp"
+#include "radiosity/hemicube_settings.hpp"
 #include "radiosity/patches.hpp"
 #include "radiosity/solvers.hpp"
 
@@ -16,6 +16,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace lucerna {
@@ -27,7 +28,7 @@ struct RadiositySolutionSettings {
   RadiosityDeviations deviations;  ///< of the original; values24Bit is refused: only the published solver has it
   RadiositySolver solver = RadiositySolver::automatic;
   double error = 1e-3;  ///< guaranteed: max |B - exact| over the mean of B
-  int mostProducts = 100000;
+  double mostProducts = 100000.0;
   bool repair = true;  ///< reciprocity and row sums
   int refinements = 0;  ///< number of times that patches are halved where light changes steeply
   double steep = 0.1;  ///< change between patches, relative to the mean irradiance, that is refined

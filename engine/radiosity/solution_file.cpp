@@ -19,7 +19,7 @@ namespace lucerna {
 namespace {
 
 constexpr char kSolutionMagic[8] = {'L', 'U', 'C', 'L', 'I', 'G', 'H', 'T'};
-constexpr std::uint32_t kSolutionVersion = 4;  // 4: with the sky's irradiance
+constexpr std::uint32_t kSolutionVersion = 5;  // 5: solvers without overshooting, numbered anew
 
 struct FileHeader {
   char magic[8];
@@ -43,15 +43,10 @@ std::uint64_t fingerprint(const Scene& scene) {
   return hash.value();
 }
 
-/// "KEY=VALUE" each. Files of earlier versions use former spellings of keys.
+/// "KEY=VALUE" each.
 std::vector<std::string> wordsOf(const std::string& text) {
   std::istringstream stream(text);
-  std::vector<std::string> words{std::istream_iterator<std::string>(stream), {}};
-  for (std::string& word : words) {
-    if (word.starts_with("rad.near=")) word.replace(0, 8, "radiosity.part-distance");
-    if (word.starts_with("rad.")) word.replace(0, 3, "radiosity");
-  }
-  return words;
+  return {std::istream_iterator<std::string>(stream), {}};
 }
 
 std::uint32_t bitsOf(const RadiosityDeviations& deviations) {

@@ -34,9 +34,7 @@ class Solve {
       lost += system.areas[i] * (1.0 - system.reflectance[i] * system.rowSums[i]);
       leaks += system.areas[i] * (1.0 - system.rowSums[i]);
       area_ += system.areas[i];
-      meanReflectance_ += system.areas[i] * system.reflectance[i];
     }
-    meanReflectance_ /= area_;
     for (int c = 0; c < 3; ++c) {
       if (largest(system.emission)[c] == 0.0) q_[c] = 0.0;  // dark: the solution is 0 for any reflectance
       if (q_[c] < 1.0) {
@@ -61,8 +59,6 @@ class Solve {
 
   std::size_t size() const { return n_; }
   const RadiositySystem& system() const { return system_; }
-  glm::dvec3 meanReflectance() const { return meanReflectance_; }
-  double area() const { return area_; }
 
   void product(const Vector& exitance, Vector& irradiance) {
     system_.product(exitance, irradiance);
@@ -144,7 +140,7 @@ class Solve {
   const RadiositySystem& system_;
   const SolverSettings& settings_;
   std::size_t n_;
-  glm::dvec3 q_{0.0}, factor_{0.0}, meanReflectance_{0.0};
+  glm::dvec3 q_{0.0}, factor_{0.0};
   double area_ = 0.0;
   RadiositySolved result_;
 };
@@ -192,26 +188,22 @@ void gaussSeidel(Solve& solve) {
   }
 }
 
-/// Southwell's method: the patch with the most unshot light shoots [Gortler1993]; overshoot: plus the light it will
-/// receive and reflect [FedaPurgathofer1992].
-void progressive(Solve& solve, bool overshoot) {
+/// Progressive refinement [CohenChen1988; RAD2008, section 2.2.3.1], which is Southwell's relaxation [Gortler1993]: the
+/// patch with the most unshot light shoots it at all others.
+void progressive(Solve& solve) {
   const RadiositySystem& s = solve.system();
   const std::size_t n = solve.size();
+  const std::size_t shotsPerReport = std::max<std::size_t>(n / 10, 1);
   Vector unshot = s.emission, irradiance(n, glm::dvec3(0.0));
-  const glm::dvec3 escape = glm::max(1.0 - solve.meanReflectance(), glm::dvec3(1e-6));
-  glm::dvec3 unshotFlux(0.0);
-  for (std::size_t i = 0; i < n; ++i) unshotFlux += s.areas[i] * unshot[i];
-  for (std::size_t count = 1;; ++count) {
-    const glm::dvec3 ambient = overshoot ? unshotFlux / solve.area() / escape : glm::dvec3(0.0);
+  for (std::size_t shots = 1;; ++shots) {
     std::size_t best = 0;
     double most = -1.0;
     for (std::size_t i = 0; i < n; ++i) {
-      const glm::dvec3 flux = glm::abs(unshot[i] + s.reflectance[i] * ambient) * s.areas[i];
+      const glm::dvec3 flux = glm::abs(unshot[i]) * s.areas[i];
       if (const double sum = flux.x + flux.y + flux.z; sum > most) most = sum, best = i;
     }
-    const glm::dvec3 shoots = unshot[best] + s.reflectance[best] * ambient;
-    unshot[best] -= shoots;
-    unshotFlux -= s.areas[best] * shoots;
+    const glm::dvec3 shoots = unshot[best];
+    unshot[best] = glm::dvec3(0.0);
     const FormFactorMatrix::Row row = s.matrix->row(best);
     for (std::size_t k = 0; k < row.patches.size(); ++k) {
       const std::size_t j = row.patches[k];
@@ -219,10 +211,9 @@ void progressive(Solve& solve, bool overshoot) {
           row.scale * static_cast<double>(row.factors[k]) * s.areas[best] / s.areas[j] * shoots;  // F_ji by reciprocity
       irradiance[j] += arrives;
       unshot[j] += s.reflectance[j] * arrives;
-      unshotFlux += s.areas[j] * s.reflectance[j] * arrives;
     }
     solve.countRow();
-    if (count % std::max<std::size_t>(n / 10, 1) != 0) continue;
+    if (shots % shotsPerReport != 0 && !solve.spent()) continue;
     Vector exitance = jacobiStep(s, irradiance);
     // Shooting assumes exact reciprocity; the last step must include its rounding errors.
     if (solve.boundOf(largest(unshot), solve.meanOf(exitance)) <= solve.error())
@@ -363,8 +354,7 @@ RadiositySolved solveRadiosity(const RadiositySystem& system, const SolverSettin
   RadiositySolver solver = settings.solver;
   if (solver == RadiositySolver::automatic)
     solver = system.reciprocal ? RadiositySolver::conjugateGradients : RadiositySolver::anderson;
-  const bool needsRows = solver == RadiositySolver::gaussSeidel || solver == RadiositySolver::progressive ||
-                         solver == RadiositySolver::overshoot;
+  const bool needsRows = solver == RadiositySolver::gaussSeidel || solver == RadiositySolver::progressive;
   if (needsRows && !system.matrix)
     throwBadInput("solver {}: needs single rows, which are not stored here; give more memory or use anderson",
                   nameOf(solver));
@@ -373,8 +363,7 @@ RadiositySolved solveRadiosity(const RadiositySystem& system, const SolverSettin
   switch (solver) {
     case RadiositySolver::jacobi: jacobi(solve, system.emission); break;
     case RadiositySolver::gaussSeidel: gaussSeidel(solve); break;
-    case RadiositySolver::progressive: progressive(solve, false); break;
-    case RadiositySolver::overshoot: progressive(solve, true); break;
+    case RadiositySolver::progressive: progressive(solve); break;
     case RadiositySolver::anderson: anderson(solve); break;
     default: conjugateGradients(solve); break;
   }

@@ -38,7 +38,7 @@ struct RadiosityProgress {
 struct SolverSettings {
   RadiositySolver solver = RadiositySolver::automatic;
   double error = 1e-6;  ///< stop at this errorBound
-  int mostProducts = 100000;
+  double mostProducts = 100000.0;  ///< progressive refinement stops within a product
   std::function<bool(const RadiosityProgress&)> onStep;  ///< called after each product; false stops
 };
 

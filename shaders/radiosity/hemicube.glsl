@@ -92,9 +92,3 @@ ivec3 placeOf(int pixel) {
   int inFace = pixel - facePixels(face);
   return ivec3(face, inFace % faceSize, inFace / faceSize);
 }
-
-// The inverse distance to a triangle's plane along a direction.
-float inverseAlong(Triangle t, vec3 direction) {
-  vec3 normal = cross(t.b - t.a, t.c - t.a);
-  return dot(normal, direction) / dot(normal, t.a);
-}

@@ -44,7 +44,7 @@ void main() {
       if (large || faces == 0u) f.high.y = -1;
       draw(f, face, hemicube * pixelsPerHemicube(), index);
       faces &= faces - 1u;
-    } while (faces != 0u);  // ends: each turn clears a bit
+    } while (faces != 0u);  // ends: each iteration clears a bit
     if (tooLarge) listLarge(hemicube * patchCount + index);
   } while (++hemicube < end);  // ends: both follow from uniforms
 #endif

@@ -24,7 +24,7 @@ uniform int mostParts;       // per side, at most
 // second order. With the kernel N.v / |v|^4 (v from a point to the other's centroid, N its normal; the receiver's own
 // cosine cancels) and the triangle's second moments M, the sum of c c^T / 12 over its corners c from its centroid, it
 // is 1 + tr(M f'') / (2 f). At a distance of ten sizes the centroid alone is off by 0.3 %.
-float spread(vec3 v, vec3 n, mat3 c) {
+float meanOverCentroid(vec3 v, vec3 n, mat3 c) {
   // scale n, whose length cancels; in a scene of 1e6 units its square would overflow
   n /= max(max(abs(n.x), max(abs(n.y), abs(n.z))), 1e-30);
   vec3 alongV = v * c, alongN = n * c;
@@ -67,8 +67,8 @@ float receivedFrom(Frame frame, int self, Triangle t) {
   uint hidden = uint(frame.u.w);  // bounded: one bit for each of kPatchParts
   if (parts == 1 && hidden == 0u) {
     vec3 middle = (r0 + r1 + r2) / 3.0;
-    return pointToTriangle(t.a, t.b, t.c) * clamp(spread((t.a + t.b + t.c) / 3.0, cross(t.b - t.a, t.c - t.a),
-                                                         mat3(r0 - middle, r1 - middle, r2 - middle)),
+    return pointToTriangle(t.a, t.b, t.c) * clamp(meanOverCentroid((t.a + t.b + t.c) / 3.0, cross(t.b - t.a, t.c - t.a),
+                                                                   mat3(r0 - middle, r1 - middle, r2 - middle)),
                                                   0.8, 1.2);
   }
   if (parts < mostParts) parts += parts & 1;

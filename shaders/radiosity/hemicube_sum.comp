@@ -21,9 +21,9 @@ layout(std430, binding = 6) buffer ExactList { uint listed; uint padding; uvec2 
 uniform int exactPixels;  // triangles expected to cover this many use the closed form; 0: never
 
 // Whether a triangle is large enough to be expected to cover exactPixels. Its solid angle decides, not the pixels that
-// happened to fall into it: with actual counts, pieces that received more than their share would lose the excess to the
-// closed form while those with less kept their deficit, and a surface cut into pieces of about that size came out 0.2 %
-// too small.
+// happened to fall into it: with actual counts, triangles that received more than their share would lose the excess
+// to the closed form while those with less kept their deficit, and a surface of triangles of about that size came out
+// 0.2 % too small.
 bool isExact(Triangle t) {
   vec3 m = (t.a + t.b + t.c) / 3.0;
   float depth = max(m.z, max(abs(m.x), abs(m.y)));
@@ -139,7 +139,7 @@ void main() {
       if (large || faces == 0u) f.high.y = -1;
       sum += sumOf(f, face, hemicube * pixelsPerHemicube(), index);
       faces &= faces - 1u;
-    } while (faces != 0u);  // ends: each turn clears a bit
+    } while (faces != 0u);  // ends: each iteration clears a bit
 #if ITEMS
     if (tooLarge) listLarge(place);  // otherwise pass 1 has done so
 #endif

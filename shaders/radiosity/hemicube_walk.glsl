@@ -25,7 +25,7 @@ uint keyOf(float inverseDistance, bool front, uint patchIndex) {
          (patchIndex & 7u);
 }
 
-// Per-face triangle setup: what a pixel test needs.
+// A triangle as a face sees it: the constants of its pixel tests.
 struct FaceTriangle {
   vec3 e0, e1, e2;   // edge functions over (x, y, 1), positive inside
   vec3 inverse;      // inverse distance over (x, y, 1)

@@ -1,26 +1,26 @@
-// Casts rays from the parts of patches to find out what they see (engine/radiosity/hidden_parts.hpp). x: rays, raysEach
+// Casts rays from the parts of patches: the parts that they see (engine/radiosity/hidden_parts.hpp). x: rays, raysEach
 // per part.
 layout(local_size_x = 64) in;
 #include "radiosity/patch_rays.glsl"
 #include "radiosity/triangle_parts.glsl"
-struct Receiver {
+struct TestedPatch {
   vec4 a, b, c;  // corners, in the hierarchy's space; a's w: the patch
   vec4 normal;   // w: the largest coordinate
 };
-layout(std430, binding = 1) readonly buffer Receivers { Receiver receivers[]; };
+layout(std430, binding = 1) readonly buffer TestedPatches { TestedPatch tested[]; };
 // part + 1 for a front face, 0 if nothing is hit, ~0 for a back face
 layout(std430, binding = 2) writeonly buffer Seen { uint seen[]; };
-uniform int recordCount, raysEach;
+uniform int testedCount, raysEach;
 
 void main() {
   int index = int(gl_GlobalInvocationID.x), part = index / raysEach % kPatchParts,
       patchPlace = index / (raysEach * kPatchParts);
-  if (patchPlace >= recordCount) return;
-  Receiver r = receivers[patchPlace];
+  if (patchPlace >= testedCount) return;
+  TestedPatch r = tested[patchPlace];
   vec2 weights = partCentroid(part);
   vec3 at = r.a.xyz + weights.x * (r.b.xyz - r.a.xyz) + weights.y * (r.c.xyz - r.a.xyz), n = r.normal.xyz;
-  // Sunflower points in the unit disk [Vogel1979], rotated from part to part by the golden section of a turn and lifted
-  // to the hemisphere for a cosine distribution.
+  // Sunflower points in the unit disk [Vogel1979], rotated from part to part by the golden section of 360
+  // degrees and lifted to the hemisphere for a cosine distribution.
   float k = float(index % raysEach), radius = sqrt((k + 0.5) / float(raysEach)),
         angle = 2.39996323 * k + 3.88322208 * float(part) + 1.0;
   vec3 u = normalize(r.b.xyz - r.a.xyz), v = cross(n, u);

@@ -109,6 +109,31 @@ TEST(BenchRad, PicturesShowWhatTheFiguresShow) {
   }
 }
 
+TEST(BenchRad, ProgressiveRefinementIsAheadOnItsWay) {
+  const TempFolder folder;
+  const std::string file = (folder / "p.json").string(), sheet = (folder / "p.png").string();
+  const std::string command = "bench pictures --original rad --progressive --scale 0.2 --size 96x72 --quiet";
+  const RunResult result = RUN_LUCERNA(command + " -o '" + sheet + "' --json '" + file + "'");
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  const nlohmann::json json = nlohmann::json::parse(std::ifstream(file));
+  ASSERT_EQ(json["pictures"].size(), 12u);
+  std::map<std::string, std::map<int, double>> error;  // by solver and hemicubes
+  for (const auto& picture : json["pictures"]) error[picture["solver"]][picture["hemicubes"]] = picture["error"];
+  for (const auto& [solver, errors] : error) {
+    ASSERT_EQ(errors.size(), 4u) << solver;
+    EXPECT_GT(errors.at(1), errors.at(10)) << solver;
+    EXPECT_GT(errors.at(10), errors.at(100)) << solver;
+    EXPECT_GT(errors.at(100), errors.at(1000)) << solver;
+  }
+  for (const int hemicubes : {1, 10}) {
+    EXPECT_LT(error["progressive"][hemicubes], 0.9 * error["jacobi"][hemicubes]);
+    EXPECT_LT(error["progressive"][hemicubes], 0.9 * error["gauss-seidel"][hemicubes]);
+  }
+  EXPECT_LT(error["gauss-seidel"][100], error["jacobi"][100]);
+  EXPECT_LT(error["progressive"][1000], 1e-3);
+  EXPECT_EQ(RUN_LUCERNA("bench pictures --original lpv --progressive -o '" + sheet + "'").exitCode, 2);
+}
+
 TEST(BenchRad, ScenesAreRefused) {
   const RunResult result = RUN_LUCERNA("bench tables --original rad some.obj");
   EXPECT_EQ(result.exitCode, 2);

@@ -254,34 +254,34 @@ TEST_F(Radiosity, WrongInputIsOneClearLine) {
 }
 
 /// Ends a run by a signal `seconds` after its start, again and again, until it ends by itself. Where that is before the
-/// first signal (the machine was busier when the time was taken), from the start with half the time. Each piece is
+/// first signal (the machine was busier when the time was taken), from the start with half the time. Each attempt is
 /// longer than the last: where the machine is busier now, none is for ever too short to get anywhere.
-void runInPieces(const std::string& command, const std::string& out, const std::string& signal, double seconds) {
-  int pieces = 0;
+void runInterrupted(const std::string& command, const std::string& out, const std::string& signal, double seconds) {
+  int stops = 0;
   for (int runs = 0; runs < 200; ++runs) {
     const RunResult result = run("timeout -s " + signal + " " + std::to_string(seconds) + " " + command);
-    if (result.exitCode == 0 && pieces > 0) return;
+    if (result.exitCode == 0 && stops > 0) return;
     if (result.exitCode == 0) {
       seconds *= 0.5;
       fs::remove(out);
       continue;
     }
-    ++pieces;
+    ++stops;
     seconds *= 1.1;
     EXPECT_TRUE(result.exitCode == 124 || result.exitCode == 130 || result.exitCode == 137)
         << result.exitCode << result.err;
   }
-  ADD_FAILURE() << (pieces > 0 ? "never ended" : "never stopped");
+  ADD_FAILURE() << (stops > 0 ? "never ended" : "never stopped");
 }
 
 TEST_F(Radiosity, KilledAndInterruptedRunsGoOnWithoutLoss) {
   generate("m.rad", "20 0.5 1000000");
   const auto start = lucerna::Clock::now();
   ASSERT_EQ(run(solve(path("m.rad"), path("whole.rad"))).exitCode, 0);
-  const double piece = 0.4 * lucerna::secondsSince(start);
-  runInPieces(solve(path("m.rad"), path("killed.rad"), "--save-every 0.02"), path("killed.rad"), "KILL", piece);
+  const double attempt = 0.4 * lucerna::secondsSince(start);
+  runInterrupted(solve(path("m.rad"), path("killed.rad"), "--save-every 0.02"), path("killed.rad"), "KILL", attempt);
   EXPECT_EQ(bytes("killed.rad"), bytes("whole.rad"));
-  runInPieces(solve(path("m.rad"), path("stopped.rad"), "--save-every 1000"), path("stopped.rad"), "INT", piece);
+  runInterrupted(solve(path("m.rad"), path("stopped.rad"), "--save-every 1000"), path("stopped.rad"), "INT", attempt);
   EXPECT_EQ(bytes("stopped.rad"), bytes("whole.rad"));
   EXPECT_FALSE(fs::exists(path("killed.rad.sweep")));
 }

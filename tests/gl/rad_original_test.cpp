@@ -129,7 +129,7 @@ TEST_F(RadOriginal, FurnaceIsBlindToTheMapAndWholeNumbersComeToRest) {
 // Inside a sphere every point receives the same from any lit patch. The published map gives more to what is near.
 TEST_F(RadOriginal, SphereWithALitCapFindsTheWrongMap) {
   const std::vector<RadTriangle> sphere = test::sphereInside(2, 0.0f, 0.6, 1000000);
-  const auto spread = [&](bool published) {
+  const auto deviation = [&](bool published) {
     OriginalRadiosity solver(library(), sphere, settings(64, true, published));
     std::vector<double> received;
     for (std::size_t i = 0; i < sphere.size(); i += 3)
@@ -139,7 +139,7 @@ TEST_F(RadOriginal, SphereWithALitCapFindsTheWrongMap) {
     for (double r : received) squares += (r - mean) * (r - mean);
     return std::sqrt(squares / static_cast<double>(received.size())) / mean;
   };
-  const double exact = spread(false), published = spread(true);
+  const double exact = deviation(false), published = deviation(true);
   RecordProperty("exact_percent", std::to_string(100.0 * exact));
   RecordProperty("published_percent", std::to_string(100.0 * published));
   EXPECT_LT(exact, 0.03);

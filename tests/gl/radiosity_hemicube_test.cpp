@@ -206,8 +206,8 @@ TEST_F(Hemicube, RowsDoNotDependOnHowTheyAreCutIntoSubmissions) {
     HemicubeSettings settings;
     settings.visibility = visibility;
     settings.resolution = 32;
-    const auto rowsBy = [&](double unmeasuredTurns, bool streamed, double& largest) {
-      settings.unmeasuredTurns = unmeasuredTurns;
+    const auto rowsBy = [&](double unmeasuredIterations, bool streamed, double& largest) {
+      settings.unmeasuredIterations = unmeasuredIterations;
       Hemicubes hemicubes(library(), capabilities(), mesh, settings);
       std::vector<FormFactorRows> all;
       if (streamed)
@@ -215,7 +215,7 @@ TEST_F(Hemicube, RowsDoNotDependOnHowTheyAreCutIntoSubmissions) {
       else
         for (int first = 0, count = hemicubes.batchSize(); first < hemicubes.patchCount(); first += count)
           all.push_back(hemicubes.rows(first, std::min(count, hemicubes.patchCount() - first)));
-      largest = hemicubes.largestTurns();
+      largest = hemicubes.largestIterations();
       std::vector<float> values;
       for (const FormFactorRows& rows : all) {
         EXPECT_EQ(rows.counts.size(), rows.fronts.size());

@@ -1,6 +1,7 @@
 // Form factors and solutions from the GPU against known answers of rooms, bowls and doors.
 #include "base/error.hpp"
 #include "radiosity/form_factor_matrix.hpp"
+#include "radiosity/hemicubes.hpp"
 #include "radiosity/solution.hpp"
 #include "scene/triangle_parts.hpp"
 #include "support/form_factor_twin.hpp"
@@ -356,7 +357,7 @@ TEST_F(RadiosityKnownOnGl, AGapAtATJunctionIsSeenAsBackground) {
     const Rows r = rowsOf(scene, settings);
     double sum = 0.0, area = 0.0;
     for (std::size_t i = 0; i < r.areas.size(); ++i) sum += r.areas[i] * (1.0 - r.fronts[i]), area += r.areas[i];
-    return std::pair{sum / area, countTJunctions(r.mesh)};
+    return std::pair{sum / area, test::countTJunctions(r.mesh)};
   };
   const auto [none, closed] = open(0.0);
   EXPECT_LT(std::abs(none), 1e-5);
@@ -366,22 +367,22 @@ TEST_F(RadiosityKnownOnGl, AGapAtATJunctionIsSeenAsBackground) {
   EXPECT_LT(gap, 5e-3);
 }
 
-TEST_F(RadiosityKnownOnGl, TurningTheSceneTurnsNoFactor) {
+TEST_F(RadiosityKnownOnGl, RotatingTheSceneChangesNoFactor) {
   // Rolls follow the patch, not the axes.
   SceneBuilder builder;
   const int m = lambertian(builder, 0.5), light = lambertian(builder, 0.1, 5.0);
   addSphere(builder, 2.0, 1, true, [&](const glm::dvec3& p) { return p.y > 1.8 ? light : m; });
   addSphere(builder, 0.5, 1, false, [&](const glm::dvec3&) { return m; });
   const Scene scene = builder.scene();
-  Scene turned = scene;
+  Scene other = scene;
   const glm::dvec3 axis = glm::normalize(glm::dvec3(0.3, -0.5, 0.8));
-  const auto turn = [&](const glm::vec3& v) {
+  const auto rotated = [&](const glm::vec3& v) {
     const glm::dvec3 p(v);
     return glm::vec3(std::cos(0.7) * p + std::sin(0.7) * glm::cross(axis, p) +
                      (1.0 - std::cos(0.7)) * glm::dot(axis, p) * axis);
   };
-  for (Vertex& v : turned.vertices) v.position = turn(v.position), v.normal = turn(v.normal);
-  const Rows a = rowsOf(scene, {}), b = rowsOf(turned, {});
+  for (Vertex& v : other.vertices) v.position = rotated(v.position), v.normal = rotated(v.normal);
+  const Rows a = rowsOf(scene, {}), b = rowsOf(other, {});
   double off = 0.0;
   for (std::size_t i = 0; i < a.areas.size(); ++i)
     for (std::size_t j = 0; j < a.areas.size(); j += 5) {
@@ -542,9 +543,9 @@ TEST_F(RadiosityKnownOnGl, ABallWithALitCapIsThatOfClosedForms) {
   }
 }
 
-// A square cut into more and more pieces: from all of them above the size that takes the closed form to all below it.
-// What is cut is no smaller for it.
-TEST_F(RadiosityKnownOnGl, ASquareCutIntoPiecesLosesNothing) {
+// A square divided into more and more patches: from all of them above the size that takes the closed form to all below
+// it. The division does not make it smaller.
+TEST_F(RadiosityKnownOnGl, ADividedSquareLosesNothing) {
   const glm::dvec3 centre(0.0, 0.0, 0.5);
   for (const int n : {4, 8, 10, 12, 14, 16, 24}) {
     SceneBuilder builder;

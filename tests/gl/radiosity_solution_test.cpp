@@ -55,7 +55,7 @@ TEST_F(RadiositySolutions, ASphereWithOneLitPatchIsLitAlikeEverywhere) {
     if (lit < 0) lit = lambertian(b, 0.5, 1.0), unlit = lambertian(b, 0.5);
     return c.y > 0.9 ? lit : unlit;
   });
-  const auto spread = [&](const RadiositySolutionSettings& settings, double& mean) {
+  const auto deviation = [&](const RadiositySolutionSettings& settings, double& mean) {
     const RadiositySolution s = solve(scene, settings);
     double emitted = 0.0, squares = 0.0, count = 0.0;
     for (const Patch& p : s.mesh.patches) emitted += p.area * p.emission.x / s.mesh.area();
@@ -68,14 +68,14 @@ TEST_F(RadiositySolutions, ASphereWithOneLitPatchIsLitAlikeEverywhere) {
     return std::sqrt(squares);
   };
   double mean = 0.0;
-  const double exact = spread(wholeTriangles(), mean);
+  const double exact = deviation(wholeTriangles(), mean);
   EXPECT_LT(exact, 0.03);
   EXPECT_NEAR(mean, 1.0, 0.02);  // rho / (1 - rho) of the mean emission
   RadiositySolutionSettings published = wholeTriangles();
   published.hemicubes.map = DeltaMap::published;
   published.hemicubes.exactPixels = 0;
   published.repair = false;
-  EXPECT_GT(spread(published, mean), 3.0 * exact);
+  EXPECT_GT(deviation(published, mean), 3.0 * exact);
 }
 
 TEST_F(RadiositySolutions, ConcentricSpheresAndABowl) {
@@ -339,7 +339,7 @@ TEST_F(RadiositySolutions, RefinementFollowsShadowBordersWithoutTJunctions) {
   settings.refinements = 2;
   const RadiositySolution fine = solve(builder.scene(), settings);
   EXPECT_GT(fine.mesh.patches.size(), coarse.mesh.patches.size() * 3 / 2);
-  EXPECT_EQ(countTJunctions(fine.mesh), 0u);
+  EXPECT_EQ(test::countTJunctions(fine.mesh), 0u);
   EXPECT_NEAR(fine.mesh.area(), coarse.mesh.area(), 1e-9);
   double border = 0.0, borders = 0.0, far = 0.0, fars = 0.0;
   for (const Patch& p : fine.mesh.patches) {

@@ -39,4 +39,7 @@ struct Box {
 /// Six plates, fronts outwards or inwards; the bottom may lack.
 void addBox(SceneBuilder& builder, const Box& box, int material, bool inside = false, bool bottom = true);
 
+/// Vertices inside another patch's edge, where light leaks through cracks. Each counts once; quadratic.
+std::size_t countTJunctions(const RadiosityMesh& mesh);
+
 }  // namespace lucerna::test

@@ -79,7 +79,7 @@ TEST(RadiosityPatches, SubdivisionKeepsAreaFrontsAndEdges) {
   const RadiosityMesh whole = makePatches(builder.scene(), {}), mesh = makePatches(builder.scene(), settings);
   EXPECT_GT(mesh.patches.size(), 1000u);
   EXPECT_NEAR(mesh.area(), whole.area(), 1e-9);
-  EXPECT_EQ(countTJunctions(mesh), 0u);
+  EXPECT_EQ(test::countTJunctions(mesh), 0u);
   double leastQuality = 1.0;
   for (const Patch& p : mesh.patches) {
     const auto c = mesh.corners(p);
@@ -106,8 +106,8 @@ TEST(RadiosityPatches, LocalRefinementSpreadsNoFurtherThanItMust) {
   std::vector<std::uint32_t> parent;
   const RadiosityMesh finer = refined(
       scene, mesh, {}, [](std::size_t i, int) { return i == 5; }, &parent);
-  EXPECT_EQ(countTJunctions(mesh), 0u);
-  EXPECT_EQ(countTJunctions(finer), 0u);
+  EXPECT_EQ(test::countTJunctions(mesh), 0u);
+  EXPECT_EQ(test::countTJunctions(finer), 0u);
   EXPECT_GT(finer.patches.size(), mesh.patches.size() + 3);
   EXPECT_LT(finer.patches.size(), mesh.patches.size() + 20);
   ASSERT_EQ(parent.size(), finer.patches.size());
@@ -140,7 +140,7 @@ TEST(RadiosityPatches, ATJunctionIsFound) {
   const int m = lambertian(builder, 0.5);
   builder.triangle({0, 0, 0}, {2, 0, 0}, {0, 2, 0}, m);
   builder.triangle({0, 0, 0}, {1, -1, 0}, {1, 0, 0}, m);
-  EXPECT_EQ(countTJunctions(makePatches(builder.scene(), {})), 1u);
+  EXPECT_EQ(test::countTJunctions(makePatches(builder.scene(), {})), 1u);
 }
 
 TEST(RadiosityPatches, WorkOnAllCoresIsDoneOnceEach) {

@@ -267,12 +267,6 @@ RadView::RadView(gl::ProgramLibrary& programs, glm::ivec2 size)
   framebuffer_ = gl::Framebuffer("radiosity show", colors, &depth_);
 }
 
-std::size_t RadView::gpuBytes() const {
-  std::size_t bytes = vertices_.bytes() + indices_.bytes() + color_.bytes() + depth_.bytes();
-  for (const gl::Texture& texture : textures_) bytes += texture.bytes();
-  return bytes;
-}
-
 void RadView::show(std::span<const RadTriangle> triangles, const RadDisplay& display, const RadTextures& textures) {
   struct Place {
     std::array<float, 3> position;

@@ -78,7 +78,6 @@ class RadView {
   void record(const Camera& camera) const;
   Bitmap read() const;
   const gl::Framebuffer& framebuffer() const { return framebuffer_; }
-  std::size_t gpuBytes() const;
 
  private:
   struct Part {  ///< triangles of one picture, or of none

@@ -86,7 +86,7 @@ class Builder {
   std::vector<RadTriangle> take() { return std::move(triangles_); }
 
  private:
-  // Halving is exact, so a triangle gives 2^k pieces; they are counted before they are made.
+  // Halving is exact, so a triangle gives 2^k parts; they are counted before they are made.
   void triangle(const RadTriangle& pattern, const dvec3& a, const dvec3& b, const dvec3& c) {
     const double area = 0.5 * glm::length(glm::cross(b - a, c - a));
     total_ += std::exp2(std::max(0.0, std::floor(std::log2(area / settings_.areaThreshold)) + 1.0));

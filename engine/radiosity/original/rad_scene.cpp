@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numbers>
 
 namespace lucerna {
 
@@ -78,6 +80,43 @@ std::vector<RadTriangle> radTrianglesOf(const RadiosityMesh& mesh, std::span<con
     t.ro = static_cast<float>(mesh.patches[i].reflectance[channel]);
     t.e = stepsOf(exitance[i][channel], exitanceOfStep);
     triangles.push_back(t);
+  }
+  return triangles;
+}
+
+Scene sceneOfTriangles(std::span<const RadTriangle> triangles, const std::string& name) {
+  Scene scene;
+  scene.name = name;
+  std::map<std::pair<float, std::uint32_t>, std::vector<std::uint32_t>> ofMaterial;
+  for (const RadTriangle& t : triangles) {
+    ofMaterial[{t.ro, t.e}].push_back(static_cast<std::uint32_t>(scene.vertices.size()));
+    for (const auto& p : {t.p1, t.p2, t.p3}) {
+      scene.vertices.push_back({{p[0], p[1], p[2]}, {}, {t.n[0], t.n[1], t.n[2]}});
+      scene.bounds.add(glm::dvec3(scene.vertices.back().position));
+    }
+  }
+  for (const auto& [key, firsts] : ofMaterial) {
+    Material& material = scene.materials.emplace_back();
+    material.name = fmt::format("ro {} e {}", key.first, key.second);
+    material.diffuse = glm::vec3(key.first);
+    material.emission = glm::vec3(static_cast<float>(key.second / std::numbers::pi));
+    Mesh& mesh = scene.meshes.emplace_back();
+    mesh.material = static_cast<int>(scene.materials.size()) - 1;
+    mesh.firstIndex = static_cast<std::uint32_t>(scene.indices.size());
+    mesh.indexCount = static_cast<std::uint32_t>(3 * firsts.size());
+    for (const std::uint32_t first : firsts) scene.indices.insert(scene.indices.end(), {first, first + 1, first + 2});
+  }
+  return scene;
+}
+
+std::vector<RadTriangle> withReceived(std::vector<RadTriangle> triangles, const Scene& scene, const RadiosityMesh& mesh,
+                                      std::span<const glm::dvec3> irradiance) {
+  for (RadTriangle& triangle : triangles) triangle.b = 0;
+  for (std::size_t i = 0; i < irradiance.size(); ++i) {
+    // A patch has its triangle's number in the scene, whose order is by material.
+    const std::size_t index = scene.indices[3 * mesh.patches[i].triangle] / 3;
+    triangles[index].b =
+        static_cast<std::uint32_t>(std::clamp(std::round(irradiance[i].x), 0.0, static_cast<double>(kRadMost)));
   }
   return triangles;
 }

@@ -41,4 +41,13 @@ RadScene radTrianglesOf(const Scene& scene, const RadSceneSettings& settings, co
 std::vector<RadTriangle> radTrianglesOf(const RadiosityMesh& mesh, std::span<const glm::dvec3> exitance, int channel,
                                         double exitanceOfStep);
 
+/// The way back: a scene of the file's triangles, one material for each pair of reflectance and emission. Exitances are
+/// the file's own whole numbers.
+Scene sceneOfTriangles(std::span<const RadTriangle> triangles, const std::string& name);
+
+/// The triangles with the irradiance of their patches, rounded, as received radiosity. `mesh` is made of
+/// sceneOfTriangles() with whole triangles; triangles without a patch receive 0.
+std::vector<RadTriangle> withReceived(std::vector<RadTriangle> triangles, const Scene& scene, const RadiosityMesh& mesh,
+                                      std::span<const glm::dvec3> irradiance);
+
 }  // namespace lucerna
