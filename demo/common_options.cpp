@@ -17,7 +17,8 @@ namespace lucerna::demo {
 
 void CommonOptions::declare(Command app) {
   offer(app.addOption("--host", host,
-                      "creates the OpenGL context: window, egl or osmesa (default: LUCERNA_HOST, else see README)"),
+                      "creates the OpenGL context: window, egl or osmesa (default: LUCERNA_HOST, else as in "
+                      "docs/commands.md)"),
         {"window", "egl", "osmesa"});
   app.addOption("--json", json, "write machine-readable results to this file");
   app.addFlag("--quiet", quiet, "no warnings, no progress");

@@ -27,14 +27,8 @@ LightKinds directLightsOf(const RenderSettings& settings) {
   return all ? LightKinds{} : LightKinds{true, true, false, false};  // else of forward shading: sun and lamps
 }
 
-LightKinds lightsOf(const RenderSettings& settings) {
-  LightKinds kinds = directLightsOf(settings);
-  if (settings.technique == Technique::rsm) kinds.lamps = false;  // its gather places samples by parallel projection
-  return kinds;
-}
-
 LightPaths modelOf(const RenderSettings& settings) {
-  LightPaths model{Transport::all, lightsOf(settings), 0};
+  LightPaths model{Transport::all, directLightsOf(settings), 0};
   switch (settings.technique) {
     case Technique::direct: model.transport = Transport::direct; break;
     case Technique::rsm: model.transport = Transport::oneBounceUnoccluded; break;

@@ -25,9 +25,7 @@ std::string nameOf(const LightPaths& paths);
 /// Whether visible lights and the visible background are included.
 bool showsLights(Transport transport);
 
-/// The kinds of light that a technique reflects between surfaces, whatever the scene contains.
-measure::LightKinds lightsOf(const RenderSettings& settings);
-/// The kinds whose direct light it shows.
+/// The kinds of light that a technique shows directly and reflects between surfaces, whatever the scene contains.
 measure::LightKinds directLightsOf(const RenderSettings& settings);
 /// The light that its settings promise: direct for `direct`, indirect for rsm and lpv, all for radiosity.
 LightPaths modelOf(const RenderSettings& settings);

@@ -85,7 +85,7 @@ class IrradianceCache {
   /// Those that have found light or darkness, as of the last update. Reads back: waits for the GPU.
   std::vector<Shown> shown() const;
 
-  // Floors: what light would be shown without a part of what a technique does (README.md, "Whose error it is"). For
+  // Bounds: the light that would be shown without a part of a technique (engine/measure/README.md). For
   // the surfaces that the pixels of the last update's view show; W per square scene unit, 0 where there is none. They
   // compile, allocate, and wait for the GPU.
   /// As CacheTransport::gather finds it, at each pixel instead of in cells.

@@ -1,9 +1,9 @@
-// What records gather at once and without steps: one bounce of sun and lamps from their reflective shadow maps, the
-// light of emissive surfaces, of the sky, and of further bounces.
+// Light that records gather at once and without steps: one bounce of sun and lamps from their reflective shadow maps,
+// the light of emissive surfaces, of the sky, and of further bounces.
 //
 // Maps and emissive surfaces are gathered through light trees. Sky and surfaces lit by earlier bounces are found by
 // cosine-distributed rays through the scene's hierarchy. Light of earlier bounces is kept at points all over
-// the scene (bounce_points.hpp), so it depends on lights and geometry alone. Source: README.md in this folder, section
+// the scene (bounce_cache.hpp), so it depends on lights and geometry alone. Source: README.md in this folder, section
 // "cache.transport=gather". Errors: Error(missingCapability) where a buffer exceeds the driver's limits.
 #pragma once
 

@@ -3,7 +3,7 @@
 // Space: the scene moved by -origin, so that no precision is lost far from the world's origin; lengths in scene units.
 // An axis is moved only if the scene lies so far along it that every difference is exact in float, so the triangles
 // keep their exact shape. Sources: binned surface area heuristic [Wald2007], collapse to eight children and node layout
-// [Ylitie2017]; README.md, section "Ray casting".
+// [Ylitie2017]; engine/pathtracer/README.md, section "Ray casting".
 #pragma once
 
 #include "scene/scene.hpp"

@@ -5,7 +5,7 @@
 // which these cells replace. Both are band 0, summed over the three channels and stored as c / (E_ref s^2), so they are
 // comparable. The quotient is taken here, per cell, and lpv/join.comp interpolates it. Interpolating the two
 // brightnesses instead lets dark cells behind walls leak into the quotient next to them, which then no longer preserves
-// a cell's mean (engine/lpv/README.md has the figures).
+// a cell's mean (docs/measurements/lpv.md has the figures).
 #include "cascades/block.glsl"
 #include "lpv/stacked.glsl"
 #include "lpv/sums.glsl"

@@ -195,7 +195,8 @@ TEST_F(CommandLine, WalkPathTracesEachPictureToItsEnd) {
   EXPECT_EQ(walk.at("technique"), "path");
   for (const char* stage : {"path tracing", "film", "tone mapping"})
     EXPECT_EQ(walk.at("stages").at(stage).at("count"), 2) << stage;
-  for (const char* stage : {"shadow", "shading", "irradiance cache"}) EXPECT_FALSE(walk.at("stages").contains(stage)) << stage;
+  for (const char* stage : {"shadow", "shading", "irradiance cache"})
+    EXPECT_FALSE(walk.at("stages").contains(stage)) << stage;
 }
 
 TEST_F(CommandLine, DirectLightLeavesTheIndirectStagesOut) {

@@ -98,7 +98,8 @@ TEST_F(PathFrameGl, NothingElseIsMade) {
   for (const gl::StageStatistics& stage : renderer.timer().statistics())
     EXPECT_TRUE(stage.name == "path tracing" || stage.name == "film" || stage.name == "tone mapping") << stage.name;
   const std::vector<std::string> names = renderer.leftOut();
-  for (const char* name : {"shadow map", "reflective shadow map", "irradiance cache", "light propagation volume", "radiosity"})
+  for (const char* name :
+       {"shadow map", "reflective shadow map", "irradiance cache", "light propagation volume", "radiosity"})
     EXPECT_NE(std::find(names.begin(), names.end(), name), names.end()) << name;
   EXPECT_EQ(renderer.lpv(), nullptr);
   EXPECT_EQ(renderer.gather(), nullptr);

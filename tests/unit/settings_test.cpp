@@ -185,8 +185,8 @@ TEST(Settings, SourcesAreInTheListOfReferences) {
 
 // Documents name settings as they are written today.
 TEST(Settings, DocumentsNameNoUnknownKey) {
-  const std::regex assignment("`((lpv|rsm|radiosity|shadow|texture|frame)\\.[a-z-]+)=");
-  for (const char* folder : {"lpv", "rsm", "radiosity", "forward"}) {
+  const std::regex assignment("`((lpv|cache|rsm|radiosity|path|shadow|texture|frame)\\.[a-z-]+)=");
+  for (const char* folder : {"lpv", "irradiance_cache", "rsm", "radiosity", "forward", "pathtracer", "measure"}) {
     std::ifstream file(std::string(LUCERNA_SOURCE_DIR "/engine/") + folder + "/README.md");
     for (std::string line; std::getline(file, line);)
       for (std::sregex_iterator match(line.begin(), line.end(), assignment), end; match != end; ++match) {
