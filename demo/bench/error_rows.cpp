@@ -360,7 +360,10 @@ ErrorRow measureFloor(const ErrorBench& bench, const Rung& rung) {
   const measure::LightKinds lights = modelOf(rung, bench.references.lights).paths.lights;
   const Scene scene = measure::litBy(bench.scene, lights);
   RenderSettings settings = settingsOf(bench, rung.picture, Component::indirect);
-  if (settings.technique == Technique::lpv) settings.cache.cascades = settings.lpv.cascades;
+  if (settings.technique == Technique::lpv) {
+    settings.cache.cascades = settings.lpv.cascades;
+    settings.cache.bounces = settings.lpv.bounces;
+  }
   settings.technique = Technique::irradianceCache;
   settings.cache.transport = rung.floor == Floor::map ? CacheTransport::gather : CacheTransport::rays;
   settings.cache.samples = settings.cache.rays;  // the records' light is not shown
