@@ -116,7 +116,7 @@ class AskPlane : public Ask {
 
 // Under the lamp: L = albedo / pi * I / h^2, all of it by the one lamp.
 TEST_F(AskPlane, OneLampGivesAllAsComputedByHand) {
-  for (const std::string technique : {"direct", "rsm", "lpv"}) {
+  for (const std::string technique : {"direct", "rsm", "irradiance-cache"}) {
     const json answer = ask(path("plane.json"), "--size 33x33 --technique " + technique, 16, 16);
     ASSERT_FALSE(answer.is_null());
     const glm::dvec3 expected = glm::dvec3(0.5, 0.4, 0.3) / std::numbers::pi * 8.0 / 4.0;
