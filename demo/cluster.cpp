@@ -3,10 +3,10 @@
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "base/json.hpp"
-#include "bench/provenance.hpp"
-#include "commands.hpp"
+#include "shared/provenance.hpp"
+#include "shared/commands.hpp"
 #include "merge.hpp"
-#include "parts.hpp"
+#include "shared/parts.hpp"
 #include "pathtracer/film.hpp"
 
 #include <fmt/core.h>

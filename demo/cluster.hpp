@@ -10,7 +10,7 @@
 //   array.sbatch, join.sbatch, submit   for Slurm
 #pragma once
 
-#include "command_line.hpp"
+#include "shared/command_line.hpp"
 
 namespace lucerna::demo {
 

@@ -1,7 +1,7 @@
 // lucerna completion bash|zsh|fish: generates a completion script from the command line's own tree.
 #include "base/error.hpp"
-#include "command_tree.hpp"
-#include "offers.hpp"
+#include "shared/programs.hpp"
+#include "shared/offers.hpp"
 
 #include <fmt/format.h>
 
@@ -239,7 +239,7 @@ Work addCompletion(Command app) {
   offer(app.addOption("SHELL", *shell, "bash, zsh or fish").required(), {"bash", "zsh", "fish"});
   app.setFooter("For the current shell only: source <(lucerna completion bash)");
   return [app, shell] {
-    const std::vector<CommandEntry> commands = commandTree(app.parent());
+    const std::vector<CommandEntry> commands = treeOfAll(app.parent());
     if (*shell == "bash") fmt::print("{}", bash(commands));
     else if (*shell == "zsh") fmt::print("{}", zsh(commands));
     else if (*shell == "fish") fmt::print("{}", fish(commands));

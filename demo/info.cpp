@@ -1,6 +1,6 @@
 // lucerna info [SCENE]: host, driver, limits, extensions; a scene's counts and needs; the table of settings.
 #include "base/error.hpp"
-#include "commands.hpp"
+#include "shared/commands.hpp"
 #include "scene/scene.hpp"
 #include "settings_page.hpp"
 

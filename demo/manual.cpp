@@ -1,7 +1,7 @@
 // lucerna manual: generates the manual page lucerna(1) in roff from the command line's own tree; man(7) documents the
 // requests.
 #include "base/error.hpp"
-#include "command_tree.hpp"
+#include "shared/programs.hpp"
 
 #include <fmt/core.h>
 
@@ -109,7 +109,7 @@ const char* kExitCodes[][2] = {
 };
 
 std::string manual(Command program) {
-  const std::vector<CommandEntry> commands = commandTree(program);
+  const std::vector<CommandEntry> commands = treeOfAll(program);
   // The date of the release rather than of the build: the same sources give the same page.
   std::string text = fmt::format(
       ".\\\" Made by `lucerna manual` from the command line's own tree.\n.TH LUCERNA 1 {} \"lucerna {}\" \"User "

@@ -2,7 +2,7 @@
 // MTL.
 #include "base/error.hpp"
 #include "base/files.hpp"
-#include "commands.hpp"
+#include "shared/commands.hpp"
 #include "scene/media_catalogue.hpp"
 #include "scene/original_scene_file.hpp"
 

@@ -2,8 +2,8 @@
 
 #include "base/error.hpp"
 #include "base/files.hpp"
-#include "commands.hpp"
-#include "parts.hpp"
+#include "shared/commands.hpp"
+#include "shared/parts.hpp"
 #include "pathtracer/film.hpp"
 
 #include <fmt/core.h>

@@ -2,7 +2,7 @@
 // and rows into one folder (parts.hpp).
 #pragma once
 
-#include "command_line.hpp"
+#include "shared/command_line.hpp"
 
 #include <filesystem>
 #include <vector>

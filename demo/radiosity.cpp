@@ -5,7 +5,7 @@
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "base/log.hpp"
-#include "offers.hpp"
+#include "shared/offers.hpp"
 #include "radiosity/direct_light.hpp"
 #include "radiosity/original/rad_file.hpp"
 #include "radiosity/original/rad_models.hpp"

@@ -1,8 +1,8 @@
 // `lucerna radiosity`: declarations shared by its parts.
 #pragma once
 
-#include "commands.hpp"
-#include "parts.hpp"
+#include "shared/commands.hpp"
+#include "shared/parts.hpp"
 #include "radiosity/original/coarse_scene.hpp"
 #include "radiosity/settings.hpp"
 

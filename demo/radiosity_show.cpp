@@ -5,7 +5,7 @@
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "base/log.hpp"
-#include "offers.hpp"
+#include "shared/offers.hpp"
 #include "radiosity/original/display.hpp"
 #include "scene/scene.hpp"
 #include "walk/free_camera.hpp"

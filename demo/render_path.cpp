@@ -5,7 +5,7 @@
 #include "base/files.hpp"
 #include "base/json.hpp"
 #include "base/log.hpp"
-#include "parts.hpp"
+#include "shared/parts.hpp"
 #include "pathtracer/film.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "scene/scene_file.hpp"

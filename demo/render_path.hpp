@@ -1,7 +1,7 @@
 // lucerna render --technique path: the path tracer's options and its progressive picture.
 #pragma once
 
-#include "commands.hpp"
+#include "shared/commands.hpp"
 #include "pathtracer/path_tracer.hpp"
 
 namespace lucerna::demo {

@@ -1,4 +1,4 @@
-// The figure of a report (demo/bench/figure.hpp): viewer of linear pictures, maps, error against time, tables, crops,
+// The figure of a report (demo/shared/figure.hpp): viewer of linear pictures, maps, error against time, tables, crops,
 // exports. Plain script without dependencies; it fetches nothing. Its numbers are those of the report's JSON, or follow
 // from them by the formulas below.
 'use strict';

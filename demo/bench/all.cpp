@@ -5,13 +5,13 @@
 #include "base/files.hpp"
 #include "bench/bench.hpp"
 #include "bench/error_bench.hpp"
-#include "bench/lpv_pictures.hpp"
+#include "originals/lpv_pictures.hpp"
 #include "bench/needs_bench.hpp"
-#include "bench/rad.hpp"
+#include "originals/rad.hpp"
 #include "bench/rays_bench.hpp"
 #include "bench/stability.hpp"
-#include "offers.hpp"
-#include "parts.hpp"
+#include "shared/offers.hpp"
+#include "shared/parts.hpp"
 
 #include <fmt/core.h>
 #include <fmt/format.h>

@@ -20,7 +20,7 @@
 #include "base/statistics.hpp"
 #include "bench/error_rows.hpp"
 #include "host/host.hpp"
-#include "offers.hpp"
+#include "shared/offers.hpp"
 
 #include <fmt/core.h>
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // lucerna bench diff A B: compares two reports row by row.
 #pragma once
 
-#include "commands.hpp"
+#include "shared/commands.hpp"
 
 namespace lucerna::demo {
 

@@ -7,8 +7,8 @@
 #include "base/image.hpp"
 #include "bench/bench.hpp"
 #include "bench/error_bench.hpp"
-#include "bench/provenance.hpp"
-#include "offers.hpp"
+#include "shared/provenance.hpp"
+#include "shared/offers.hpp"
 
 #include <fmt/core.h>
 #include <fmt/format.h>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bench/error_report.hpp"
-#include "parts.hpp"
+#include "shared/parts.hpp"
 
 namespace lucerna::demo::bench {
 

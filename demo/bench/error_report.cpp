@@ -3,7 +3,7 @@
 #include "base/error.hpp"
 #include "base/image.hpp"
 #include "base/log.hpp"
-#include "bench/figure.hpp"
+#include "shared/figure.hpp"
 #include "bench/plot.hpp"
 #include "measure/front.hpp"
 #include "measure/heat_map.hpp"

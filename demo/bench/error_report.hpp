@@ -2,8 +2,8 @@
 #pragma once
 
 #include "bench/error_rows.hpp"
-#include "bench/html.hpp"
-#include "bench/provenance.hpp"
+#include "shared/html.hpp"
+#include "shared/provenance.hpp"
 
 namespace lucerna::demo::bench {
 

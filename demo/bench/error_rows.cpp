@@ -7,7 +7,7 @@
 #include "base/image.hpp"
 #include "base/log.hpp"
 #include "base/statistics.hpp"
-#include "bench/provenance.hpp"
+#include "shared/provenance.hpp"
 #include "gl/draw.hpp"
 #include "measure/flip.hpp"
 #include "measure/front.hpp"

@@ -1,7 +1,7 @@
 // The measurements of `lucerna bench error`: each technique over a ladder of settings, and each deviation alone.
 #pragma once
 
-#include "commands.hpp"
+#include "shared/commands.hpp"
 
 #include <string>
 #include <vector>

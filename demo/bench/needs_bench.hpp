@@ -1,7 +1,7 @@
 // `lucerna bench needs` as functions, for `bench all` and tests.
 #pragma once
 
-#include "commands.hpp"
+#include "shared/commands.hpp"
 
 #include <string>
 #include <vector>

@@ -2,7 +2,7 @@
 
 #include "base/error.hpp"
 #include "base/files.hpp"
-#include "bench/provenance.hpp"
+#include "shared/provenance.hpp"
 
 #include <algorithm>
 #include <cmath>

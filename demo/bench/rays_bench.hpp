@@ -1,7 +1,7 @@
 // `lucerna bench rays` as a function, for `bench all`.
 #pragma once
 
-#include "commands.hpp"
+#include "shared/commands.hpp"
 
 #include <string>
 

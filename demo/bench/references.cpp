@@ -2,7 +2,7 @@
 
 #include "base/clock.hpp"
 #include "base/error.hpp"
-#include "bench/path_sampler.hpp"
+#include "shared/path_sampler.hpp"
 #include "measure/batches.hpp"
 
 #include <fmt/core.h>

@@ -2,10 +2,10 @@
 #pragma once
 
 #include "bench/light_model.hpp"
-#include "commands.hpp"
+#include "shared/commands.hpp"
 #include "measure/image_errors.hpp"
 #include "measure/reference.hpp"
-#include "parts.hpp"
+#include "shared/parts.hpp"
 
 #include <map>
 #include <optional>

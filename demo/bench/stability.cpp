@@ -5,7 +5,7 @@
 #include "base/error.hpp"
 #include "base/hash.hpp"
 #include "bench/bench.hpp"
-#include "parts.hpp"
+#include "shared/parts.hpp"
 
 #include <fmt/core.h>
 

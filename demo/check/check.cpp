@@ -6,12 +6,12 @@
 #include "base/json.hpp"
 #include "base/log.hpp"
 #include "bench/bench.hpp"
-#include "bench/provenance.hpp"
+#include "shared/provenance.hpp"
 #include "check/child.hpp"
-#include "check/command.hpp"
+#include "bench/bench.hpp"
 #include "check/report.hpp"
 #include "gl/draw.hpp"
-#include "offers.hpp"
+#include "shared/offers.hpp"
 
 #include <fmt/core.h>
 #include <unistd.h>

@@ -7,7 +7,7 @@
 // Parts, each a list of units: context, programs, pictures, probes, stages, rays, error, sharing.
 #pragma once
 
-#include "commands.hpp"
+#include "shared/commands.hpp"
 #include "gl/build_watch.hpp"
 
 #include <functional>

@@ -2,7 +2,7 @@
 
 #include "base/clock.hpp"
 #include "base/error.hpp"
-#include "commands.hpp"
+#include "shared/commands.hpp"
 
 #include <fcntl.h>
 #include <poll.h>

@@ -1,7 +1,7 @@
 #include "check/report.hpp"
 
 #include "base/named_values.hpp"
-#include "bench/provenance.hpp"
+#include "shared/provenance.hpp"
 
 #include <fmt/core.h>
 

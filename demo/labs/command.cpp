@@ -2,7 +2,7 @@
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "base/log.hpp"
-#include "commands.hpp"
+#include "shared/commands.hpp"
 #include "gl/objects.hpp"
 #include "labs/command.hpp"
 #include "labs/hand_in.hpp"

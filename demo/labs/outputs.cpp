@@ -1,5 +1,5 @@
 // A check's result for the terminal, as JSON, as JUnit XML and for Gradescope.
-#include "bench/html.hpp"
+#include "shared/html.hpp"
 #include "labs/hand_in.hpp"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 // The hand-in as one page: answers, checks, pictures with sliders, plots, time per task.
 #include "base/files.hpp"
-#include "bench/html.hpp"
+#include "shared/html.hpp"
 #include "labs/hand_in.hpp"
 
 #include <fmt/format.h>

@@ -17,7 +17,7 @@ foreach(page IN ITEMS
   string(REGEX MATCH "^(.*)\\|(.*)$" matched ${page})
   set(file ${generated}/${CMAKE_MATCH_2})
   separate_arguments(arguments UNIX_COMMAND "${CMAKE_MATCH_1}")
-  add_custom_command(OUTPUT ${file} COMMAND lucerna ${arguments} > ${file} DEPENDS lucerna VERBATIM)
+  add_custom_command(OUTPUT ${file} COMMAND lucerna ${arguments} > ${file} DEPENDS ${lucerna_programs} VERBATIM)
   list(APPEND pages ${file})
 endforeach()
 # -n: no time stamp, so that the same sources give the same file.
@@ -35,7 +35,7 @@ configure_file(${packaging}/${LUCERNA_APP_ID}.metainfo.xml.in ${generated}/${LUC
 add_custom_target(lucerna_pages ALL DEPENDS ${pages} ${generated}/lucerna.1.gz ${generated}/changelog.gz)
 
 # The program and its data, without generators and the READMEs' pictures.
-install(TARGETS lucerna RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
+install(TARGETS ${lucerna_programs} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/shaders ${PROJECT_SOURCE_DIR}/assets ${PROJECT_SOURCE_DIR}/keyFrames
         DESTINATION ${CMAKE_INSTALL_DATADIR}/lucerna COMPONENT program
         PATTERN generate.py EXCLUDE PATTERN generator EXCLUDE PATTERN __pycache__ EXCLUDE PATTERN "*.jpg" EXCLUDE)

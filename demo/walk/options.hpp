@@ -1,8 +1,8 @@
 // Options of `lucerna walk`.
 #pragma once
 
-#include "commands.hpp"
-#include "parts.hpp"
+#include "shared/commands.hpp"
+#include "shared/parts.hpp"
 
 #include <string>
 

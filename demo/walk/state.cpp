@@ -1,6 +1,6 @@
 #include "walk/state.hpp"
 
-#include "bench/provenance.hpp"
+#include "shared/provenance.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -2,7 +2,7 @@
 // Plain data: window.cpp acts on it once a frame, panel.cpp displays it.
 #pragma once
 
-#include "commands.hpp"
+#include "shared/commands.hpp"
 #include "scene/key_frames.hpp"
 #include "walk/compare.hpp"
 #include "walk/free_camera.hpp"

@@ -4,7 +4,7 @@
 #include "base/error.hpp"
 #include "base/hash.hpp"
 #include "base/log.hpp"
-#include "bench/path_sampler.hpp"
+#include "shared/path_sampler.hpp"
 #include "measure/flip.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // The thirteen estimators that bench tables --original vpt compares: their names, and that each is another one.
-#include "bench/vpt_estimators.hpp"
+#include "originals/vpt_estimators.hpp"
 
 #include <gtest/gtest.h>
 

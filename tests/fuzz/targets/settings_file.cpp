@@ -1,7 +1,7 @@
 // Settings files, as --settings takes them.
 #include "fuzz.hpp"
 
-#include "settings_file.hpp"
+#include "shared/settings_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   return lucerna::fuzz::parse([&] {

@@ -1,0 +1,25 @@
+// lucerna-originals: the published tables and pictures, and the museum of their deviations.
+#include "originals/originals.hpp"
+#include "shared/programs.hpp"
+
+int main(int argc, char** argv) {
+  using namespace lucerna::demo;
+  return runProgram({"lucerna", LUCERNA_VERSION, "Lucerna's originals."}, argc, argv,
+                    [](Command program, Subcommands& commands) {
+                      commands.add("bench", descriptionOf("bench"), [](Command bench) {
+                        Subcommands originals(bench);
+                        originals.add("tables", "Reproduce an original's published tables: published, measured, ratio",
+                                      addBenchTables);
+                        originals.add("pictures",
+                                      "Reproduce an original's published pictures on one labelled sheet",
+                                      addBenchPictures);
+                        return originals.work();
+                      });
+                      commands.add("lab", descriptionOf("lab"), [](Command lab) {
+                        Subcommands museum(lab);
+                        addMuseum(museum);
+                        return museum.work();
+                      });
+                      addTree(commands, program);
+                    });
+}
