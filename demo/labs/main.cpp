@@ -4,8 +4,8 @@
 
 int main(int argc, char** argv) {
   using namespace lucerna::demo;
-  return runProgram({"lucerna-labs", LUCERNA_VERSION, "Lucerna's teaching labs.\nStart with: lucerna-labs lab list"}, argc,
-                    argv, [](Command program, Subcommands& commands) {
+  return runProgram({"lucerna-labs", LUCERNA_VERSION, "Lucerna's teaching labs.\nStart with: lucerna-labs lab list"},
+                    argc, argv, [](Command program, Subcommands& commands) {
                       commands.add("lab", descriptionOf("lab"), [](Command lab) {
                         Subcommands labs(lab);
                         addLabs(labs);

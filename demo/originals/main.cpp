@@ -10,8 +10,7 @@ int main(int argc, char** argv) {
                         Subcommands originals(bench);
                         originals.add("tables", "Reproduce an original's published tables: published, measured, ratio",
                                       addBenchTables);
-                        originals.add("pictures",
-                                      "Reproduce an original's published pictures on one labelled sheet",
+                        originals.add("pictures", "Reproduce an original's published pictures on one labelled sheet",
                                       addBenchPictures);
                         return originals.work();
                       });

@@ -73,8 +73,8 @@ int startOther(int argc, char** argv) {
   if (other == kOthers.end()) return 0;
   const fs::path file = beside(other->program);
   execv(file.c_str(), argv);
-  fmt::print(stderr, "lucerna: {}: {} ({}); in a build folder: cmake --build . --target {}\n", command,
-             file.string(), std::strerror(errno), other->program);
+  fmt::print(stderr, "lucerna: {}: {} ({}); in a build folder: cmake --build . --target {}\n", command, file.string(),
+             std::strerror(errno), other->program);
   return static_cast<int>(ErrorKind::missingCapability);
 }
 
@@ -96,8 +96,8 @@ std::vector<CommandEntry> treeOfAll(Command program) {
     const std::size_t first = result.size();
     for (const std::vector<CommandEntry>& tree : others)
       for (const CommandEntry& other : tree) {
-        const bool isKnown = std::any_of(result.begin(), result.end(),
-                                         [&](const CommandEntry& r) { return r.path == other.path; });
+        const bool isKnown =
+            std::any_of(result.begin(), result.end(), [&](const CommandEntry& r) { return r.path == other.path; });
         if (!entry.path.empty() && isBelow(other.path, entry.path) && !isKnown) result.push_back(other);
         // Commands of several programs have the subcommands of all.
         if (isKnown && other.path == entry.path)

@@ -291,6 +291,26 @@ TEST_F(CommandLine, ASettingOfOneTechniqueChoosesIt) {
   expectRefused(begin + "--set frame.reuse=maybe" + end, 2, {"frame.reuse", "maybe"}, "y.pfm");
 }
 
+TEST_F(CommandLine, ACommandOfAMissingProgramNamesItsTarget) {
+  fs::copy_file(LUCERNA_BINARY, path("lucerna"));
+  const auto alone = [&](const std::string& arguments) {
+    return lucerna::test::run(path("lucerna") + " " + arguments);
+  };
+  EXPECT_EQ(alone("--version").exitCode, 0);
+  for (const auto& [command, program] :
+       {std::pair{"bench error x.json", "lucerna-bench"}, std::pair{"bench tables --original lpv", "lucerna-originals"},
+        std::pair{"lab list", "lucerna-labs"}}) {
+    const RunResult result = alone(command);
+    EXPECT_EQ(result.exitCode, 3) << command;
+    EXPECT_NE(result.err.find(std::string("--target ") + program), std::string::npos) << result.err;
+  }
+  // Help, completions and manual name the commands all the same.
+  EXPECT_NE(alone("--help").out.find("bench"), std::string::npos);
+  EXPECT_NE(alone("completion bash").out.find("bench"), std::string::npos);
+  EXPECT_EQ(alone("completion bash").out.find("bench error"), std::string::npos);
+  EXPECT_NE(RUN_LUCERNA("completion bash").out.find("bench error"), std::string::npos);
+}
+
 TEST_F(CommandLine, AWalkSaysWhatIsMadeOnce) {
   for (const char* reuse : {"on", "off"}) {
     const RunResult result =
