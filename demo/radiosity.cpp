@@ -10,7 +10,7 @@
 #include "radiosity/original/rad_file.hpp"
 #include "radiosity/original/rad_models.hpp"
 #include "radiosity/original/rad_scene.hpp"
-#include "scene/needs.hpp"
+#include "scene/features.hpp"
 
 #include <fmt/core.h>
 

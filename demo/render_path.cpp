@@ -220,7 +220,7 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
     if (name.starts_with("path.")) json["deviations"].push_back(name);
   json["leaked_paths"] = statistics.leakedPaths;
   json["wrong_crossings"] = statistics.wrongCrossings;
-  json["loop_turns"] = statistics.turns;
+  json["loop_turns"] = statistics.iterations;
   json["collisions"] = statistics.collisions;
   json["settings"] = picture.settings;
   json["size"] = {image.width, image.height};
@@ -237,7 +237,7 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
                                                                : nlohmann::ordered_json(nullptr);
   json["gpu_bytes"] = tracer.gpuBytes();
   json["left_out"] = nlohmann::ordered_json::array();
-  for (const auto& [name, needed] : tracer.needs().named())
+  for (const auto& [name, needed] : tracer.features().named())
     if (!needed) json["left_out"].push_back(name);
   common.writeJson(json);
   return 0;

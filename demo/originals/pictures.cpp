@@ -180,7 +180,7 @@ class LpvPictures {
   }
 
   void readMap(const Renderer& renderer) {
-    const glm::dvec3 origin = exactOrigin(input_.scene.bounds);
+    const glm::dvec3 origin = floatingOrigin(input_.scene.bounds);
     Bounds bounds = input_.scene.bounds;
     bounds.min -= origin, bounds.max -= origin;
     for (const StagePicture& stage : renderer.stagePictures())

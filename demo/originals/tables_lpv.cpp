@@ -190,10 +190,10 @@ class Bench {
   explicit Bench(const TablesInput& input)
       : input_(input),
         capabilities_(input.context.capabilities()),
-        needs_(analyse(input.scene)),
-        gpuScene_(input.scene, needs_, capabilities_),
+        features_(analyse(input.scene)),
+        gpuScene_(input.scene, features_, capabilities_),
         timer_(capabilities_.softwareRenderer) {
-    if (!LightPropagationVolume::isNeeded(needs_))
+    if (!LightPropagationVolume::isNeeded(features_))
       throwBadInput("{}: no sun, or nothing that reflects it: no indirect light to measure", input.scene.file.string());
     sunFrustum_ = fitSunFrustum(input.scene, input.scene.sun->direction);
     shared::FrameConstants frame{};
@@ -271,7 +271,7 @@ class Bench {
  private:
   const TablesInput& input_;
   const gl::Capabilities& capabilities_;
-  SceneNeeds needs_;
+  SceneFeatures features_;
   GpuScene gpuScene_;
   gl::TimeQuery timer_;
   SunFrustum sunFrustum_;

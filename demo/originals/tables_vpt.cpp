@@ -48,20 +48,20 @@ PartFolder::Json measureEstimators(const VptTablesInput& input, glm::ivec2 size,
       "the picture's mean.\n{:<38}{:>12}{:>14}{:>22}{:>12}{:>14}\n",
       picture.label, picture.figure, estimators[0].name, reference.statistics.samples, "", "ms a sample", "NRMSE",
       "bias", "time", "loop turns");
-  double firstMs = 0.0, firstTurns = 0.0;
+  double firstMs = 0.0, firstIterations = 0.0;
   for (const VptEstimator& estimator : estimators) {
     if (interrupted()) break;
     const VptResult result =
         renderVpt(input.context, input.programs, picture, scene, size, samples, mostSeconds, estimator.deviations);
     const double ms = result.ms / result.statistics.samples,
-                 turns = result.statistics.turns / result.statistics.samples;
-    if (firstMs == 0.0) firstMs = ms, firstTurns = turns;
+                 turns = result.statistics.iterations / result.statistics.samples;
+    if (firstMs == 0.0) firstMs = ms, firstIterations = turns;
     const double bias = channelMean(result.statistics.mean) / right - 1.0;
     const double error =
         std::hypot(channelMean(result.statistics.meanError), channelMean(reference.statistics.meanError)) / right;
     const double nrmse = measure::errorsOf(result.image, reference.image).nrmse;
     summary += fmt::format("{:<38}{:>12.4g}{:>14.4g}{:>22}{:>11.3g}x{:>13.3g}x\n", estimator.name, ms, nrmse,
-                           fmt::format("{:+.4f} +- {:.4f}", bias, error), ms / firstMs, turns / firstTurns);
+                           fmt::format("{:+.4f} +- {:.4f}", bias, error), ms / firstMs, turns / firstIterations);
     made["estimators"].push_back({{"estimator", estimator.name},
                                   {"figure", picture.figure},
                                   {"ms_a_sample", ms},
@@ -70,7 +70,7 @@ PartFolder::Json measureEstimators(const VptTablesInput& input, glm::ivec2 size,
                                   {"bias", bias},
                                   {"bias_error", error},
                                   {"time_ratio", ms / firstMs},
-                                  {"turns_ratio", turns / firstTurns}});
+                                  {"turns_ratio", turns / firstIterations}});
   }
   made["summary"] = summary;
   return made;
@@ -87,7 +87,7 @@ std::string growthOf(const std::vector<VptPicture>& pictures, const std::vector<
     const double published = over([&](std::size_t k) { return pictures[k].publishedMs / pictures[k].samples; });
     const double time = over([&](std::size_t k) { return results[k].ms / results[k].statistics.samples; });
     const double turns =
-        over([&](std::size_t k) { return results[k].statistics.turns / results[k].statistics.samples; });
+        over([&](std::size_t k) { return results[k].statistics.iterations / results[k].statistics.samples; });
     text += fmt::format("{:<44}{:>12.3g}{:>12.3g}{:>12.3g}{:>16.4g}\n",
                         fmt::format("{} {}", pictures[i].figure, pictures[i].label), published, time, turns,
                         results[i].statistics.collisions / (results[i].statistics.samples * pixels));
@@ -101,7 +101,7 @@ PartFolder::Json keptOf(const VptResult& result, double preparationMs) {
   return {{"ms", result.ms},
           {"preparation_ms", preparationMs},
           {"samples", s.samples},
-          {"turns", s.turns},
+          {"turns", s.iterations},
           {"collisions", s.collisions},
           {"mean", {s.mean.x, s.mean.y, s.mean.z}},
           {"relative_error", s.relativeError}};
@@ -112,7 +112,7 @@ VptResult resultOf(const PartFolder::Json& kept) {
   result.ms = number(kept.at("ms"));
   result.preparationMs = number(kept.at("preparation_ms"));  // loading is in it
   result.statistics.samples = number(kept.at("samples"));
-  result.statistics.turns = number(kept.at("turns"));
+  result.statistics.iterations = number(kept.at("turns"));
   result.statistics.collisions = number(kept.at("collisions"));
   for (int c = 0; c < 3; ++c) result.statistics.mean[c] = number(kept.at("mean").at(static_cast<std::size_t>(c)));
   result.statistics.relativeError = number(kept.at("relative_error"));
@@ -207,7 +207,7 @@ Tables measureVptTables(const VptTablesInput& input) {
              {"ms", result.ms},
              {"preparation_ms", result.preparationMs},
              {"spp", result.statistics.samples},
-             {"loop_turns", result.statistics.turns},
+             {"loop_turns", result.statistics.iterations},
              {"collisions", result.statistics.collisions},
              {"million_paths_per_s", done / (1000.0 * result.ms)},
              {"published_million_paths_per_s", wanted / (1000.0 * picture.publishedMs)},

@@ -7,7 +7,7 @@
 
 #include "gl/objects.hpp"
 #include "gl/program.hpp"
-#include "scene/needs.hpp"
+#include "scene/features.hpp"
 
 #include <optional>
 
@@ -17,7 +17,7 @@ class EnvironmentView {
  public:
   EnvironmentView(gl::ProgramLibrary& programs, const Scene& scene);
 
-  static bool isNeeded(const SceneNeeds& needs) { return needs.environment; }
+  static bool isNeeded(const SceneFeatures& features) { return features.environment; }
 
   /// `target` has the given size; its depth has been drawn with the same camera.
   void record(const gl::Framebuffer& target, const gl::VertexArray& noAttributes, const Camera& camera,

@@ -44,14 +44,14 @@ bool outsideFrustum(const glm::mat4& clipFromWorld, const glm::vec3& centre, con
 
 }  // namespace
 
-GpuScene::GpuScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabilities& capabilities,
+GpuScene::GpuScene(const Scene& scene, const SceneFeatures& features, const gl::Capabilities& capabilities,
                    const GpuSceneSettings& settings)
-    : scene_(&scene), needs_(needs), isSoftware_(capabilities.softwareRenderer) {
+    : scene_(&scene), features_(features), isSoftware_(capabilities.softwareRenderer) {
   gl::Sampling sampling{settings.mipmaps ? gl::Filter::linearMipmaps : gl::Filter::linear, gl::Filter::linear,
                         gl::Wrap::repeat};
   // Without mipmaps a software renderer reads every texel below a pixel, thousands where the picture is small.
   const bool anisotropic = capabilities.anisotropicFilter && settings.mipmaps;
-  if (anisotropic && settings.anisotropy > 1.0f && needs.diffuseTextures) isotropic_.emplace("isotropic", sampling);
+  if (anisotropic && settings.anisotropy > 1.0f && features.diffuseTextures) isotropic_.emplace("isotropic", sampling);
   sampling.anisotropy = anisotropic ? std::min(settings.anisotropy, capabilities.maxAnisotropy) : 1.0f;
 
   struct Use {
@@ -85,16 +85,16 @@ GpuScene::GpuScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabi
   // Materials, with the textures that the scene needs.
   for (const Material& material : scene.materials) {
     Surface surface{material.diffuse, material.specular, material.emission, material.shininess};
-    if (needs.diffuseTextures && material.diffuseTexture >= 0)
+    if (features.diffuseTextures && material.diffuseTexture >= 0)
       surface.diffuseTexture = upload(material.diffuseTexture, kColour);
-    surface.masked = needs.alphaMasks && material.alphaMasked;
+    surface.masked = features.alphaMasks && material.alphaMasked;
     if (surface.masked)
       surface.maskTexture = upload(material.alphaTexture >= 0 ? material.alphaTexture : material.diffuseTexture, kMask);
-    if (needs.emissionTextures && material.emissionTexture >= 0) {
+    if (features.emissionTextures && material.emissionTexture >= 0) {
       surface.emission = material.emissionScale;
       surface.emissionTexture = upload(material.emissionTexture, kColour);
     }
-    if (needs.normalMaps && material.normalTexture >= 0) {
+    if (features.normalMaps && material.normalTexture >= 0) {
       surface.normalScale = material.normalScale;
       surface.normalTexture = upload(material.normalTexture, kLinear);
     }
@@ -106,7 +106,7 @@ GpuScene::GpuScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabi
     }
     surfaces_.push_back(surface);
   }
-  if (needs.diffuseTextures || needs.emissionTextures || needs.normalMaps || needs.metalMaps) {
+  if (features.diffuseTextures || features.emissionTextures || features.normalMaps || features.metalMaps) {
     white_.emplace("white", gl::Format::rgba8, glm::ivec2(1));
     const std::array<std::uint8_t, 4> texel{255, 255, 255, 255};
     white_->upload(gl::Texels::rgbaByte, texel.data());
@@ -132,7 +132,7 @@ GpuScene::GpuScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabi
     (isMasked(mesh) ? all_.masked_ : all_.opaque_).push_back(draw);
     if (!isMasked(mesh)) opaqueIndexCount_ = static_cast<std::uint32_t>(indices.size());
   }
-  CHECK(all_.masked_.empty() || needs.alphaMasks, "{} masked meshes", all_.masked_.size());
+  CHECK(all_.masked_.empty() || features.alphaMasks, "{} masked meshes", all_.masked_.size());
 
   vertices_ = gl::Buffer("scene vertices", scene.vertices.size() * sizeof(Vertex), scene.vertices.data(),
                          gl::Usage::staticDraw);
@@ -147,30 +147,30 @@ void GpuScene::uploadIndices(const std::string& name, const std::vector<std::uin
 }
 
 gl::ShaderFlags GpuScene::materialFlags(bool masked) const {
-  return {{"DIFFUSE_TEXTURES", needs_.diffuseTextures},
+  return {{"DIFFUSE_TEXTURES", features_.diffuseTextures},
           {"ALPHA_MASK", masked},
-          {"EMISSION_TEXTURES", needs_.emissionTextures},
-          {"NORMAL_MAPS", needs_.normalMaps},
-          {"METAL_MAPS", needs_.metalMaps}};
+          {"EMISSION_TEXTURES", features_.emissionTextures},
+          {"NORMAL_MAPS", features_.normalMaps},
+          {"METAL_MAPS", features_.metalMaps}};
 }
 
 void GpuScene::bindSurface(const gl::Program& program, const Surface& surface) const {
   program.set("materialDiffuse", surface.diffuse);
-  if (needs_.specular) {
+  if (features_.specular) {
     program.set("materialSpecular", surface.specular);
     program.set("materialShininess", surface.shininess);
   }
-  if (needs_.emission) program.set("materialEmission", surface.emission);
+  if (features_.emission) program.set("materialEmission", surface.emission);
   const auto bind = [&](int texture, GLuint unit) {
     (texture >= 0 ? textures_[static_cast<std::size_t>(texture)] : *white_).bind(unit);
   };
-  if (needs_.diffuseTextures) bind(surface.diffuseTexture, UNIT_DIFFUSE);
-  if (needs_.emissionTextures) bind(surface.emissionTexture, UNIT_EMISSION_MAP);
-  if (needs_.normalMaps) {
+  if (features_.diffuseTextures) bind(surface.diffuseTexture, UNIT_DIFFUSE);
+  if (features_.emissionTextures) bind(surface.emissionTexture, UNIT_EMISSION_MAP);
+  if (features_.normalMaps) {
     program.set("materialNormalScale", surface.normalScale);
     bind(surface.normalTexture, UNIT_NORMAL_MAP);
   }
-  if (needs_.metalMaps) {
+  if (features_.metalMaps) {
     program.set("materialMetallic", surface.metallic);
     program.set("materialRoughness", surface.roughness);
     bind(surface.metalTexture, UNIT_METAL_MAP);

@@ -4,7 +4,7 @@
 #include "gl/context.hpp"
 #include "gl/objects.hpp"
 #include "gl/program.hpp"
-#include "scene/needs.hpp"
+#include "scene/features.hpp"
 #include "scene/scene.hpp"
 
 #include <optional>
@@ -26,7 +26,7 @@ struct SurfacePrograms {
 
 class GpuScene {
  public:
-  GpuScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabilities& capabilities,
+  GpuScene(const Scene& scene, const SceneFeatures& features, const gl::Capabilities& capabilities,
            const GpuSceneSettings& settings = {});
 
   /// Flags that every program with materials takes, masked or not.
@@ -69,7 +69,7 @@ class GpuScene {
   bool isSelectionWorthwhile(int size) const;
 
   const Scene& scene() const { return *scene_; }
-  const SceneNeeds& needs() const { return needs_; }
+  const SceneFeatures& features() const { return features_; }
   std::size_t gpuBytes() const;
 
  private:
@@ -88,7 +88,7 @@ class GpuScene {
   void bindSurface(const gl::Program& program, const Surface& surface) const;
 
   const Scene* scene_;
-  SceneNeeds needs_;
+  SceneFeatures features_;
   gl::Buffer vertices_;
   Selection all_;
   std::vector<gl::Texture> textures_;

@@ -18,7 +18,7 @@ LayeredDepth::LayeredDepth(gl::ProgramLibrary& programs, const GpuScene& scene, 
                                 "forward/depth_layered.geom");
   };
   programs_.opaque = load(false);
-  if (scene.needs().alphaMasks) programs_.masked = load(true);
+  if (scene.features().alphaMasks) programs_.masked = load(true);
   gl::Sampling sampling;
   if (!shape.followed) {
     sampling = {gl::Filter::linear, gl::Filter::linear, gl::Wrap::border, glm::vec4(1.0f)};

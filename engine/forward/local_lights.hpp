@@ -20,7 +20,7 @@ class LocalLights {
     int spotSize = 1024;  ///< texels per side of a spot's shadow map
     int pointSize = 512;  ///< texels per side of each of the six faces of an omnidirectional light's
   };
-  static bool isNeeded(const SceneNeeds& needs) { return needs.spotLights || needs.pointLights; }
+  static bool isNeeded(const SceneFeatures& features) { return features.spotLights || features.pointLights; }
 
   LocalLights(gl::ProgramLibrary& programs, const GpuScene& scene, const Settings& settings,
               const std::vector<LightViews>& spots, const std::vector<LightViews>& points);

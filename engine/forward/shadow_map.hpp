@@ -12,7 +12,7 @@ class ShadowMap {
   struct Settings {
     int size = 2048;  ///< texels per side
   };
-  static bool isNeeded(const SceneNeeds& needs) { return needs.directionalLight; }
+  static bool isNeeded(const SceneFeatures& features) { return features.directionalLight; }
 
   ShadowMap(gl::ProgramLibrary& programs, const GpuScene& scene, const Settings& settings);
 

@@ -14,7 +14,7 @@ VisibleSurfaces::VisibleSurfaces(gl::ProgramLibrary& programs, const GpuScene& s
     return &programs.loadRaster(name, "forward/surface.vert", "forward/visible.frag", scene.materialFlags(masked));
   };
   programs_.opaque = load("visible surfaces opaque", false);
-  if (scene.needs().alphaMasks) programs_.masked = load("visible surfaces masked", true);
+  if (scene.features().alphaMasks) programs_.masked = load("visible surfaces masked", true);
   resize(depth);
 }
 

@@ -4,7 +4,7 @@
 // `#define NAME value`, then the file with its include-once, root-relative `#include "lib/x.glsl"`s. It refuses what
 // drivers accept: an undeclared identifier in #if (a misspelt one would silently disable a feature), a missing file, a
 // cycle. A branch that a flag leaves out (`#if FLAG`, `#if !FLAG`) includes nothing. Driver logs are rewritten to
-// shaders/lib/x.glsl:12. Flags come only from SceneNeeds and Settings.
+// shaders/lib/x.glsl:12. Flags come only from SceneFeatures and Settings.
 #pragma once
 
 #include "gl/objects.hpp"

@@ -1,6 +1,6 @@
 // Floors of IrradianceCache: light at the surfaces that pixels show.
 #include "gl/pass.hpp"
-#include "gl/pieces.hpp"
+#include "gl/chunks.hpp"
 #include "irradiance_cache/irradiance_cache.hpp"
 #include "shared/bindings.h"
 #include "shared/irradiance_cache.h"
@@ -11,7 +11,7 @@ namespace lucerna {
 
 namespace {
 constexpr GLuint kListBuffer = 1;  // GL_SHADER_STORAGE_BUFFER
-constexpr std::size_t kAtOnce = 1u << 14;  // of CACHE_LANES lanes each, per submission: gl/pieces.hpp
+constexpr std::size_t kAtOnce = 1u << 14;  // of CACHE_LANES lanes each, per submission: gl/chunks.hpp
 }  // namespace
 
 // light: adds to the records bound, which are listed and counted like those of cells. The mean of `rounds`.
@@ -70,7 +70,7 @@ Image IrradianceCache::readFromCells(const CascadeSettings& settings, const std:
   return atPixels(1, [&](const gl::Buffer& work) {
     cells.bindUniform(BLOCK_CASCADES);
     for (int done = 0; done < paths; done += CACHE_LANES) {
-      gl::Submission::add(static_cast<double>(kAtOnce * CACHE_LANES) * kTurnsOfPath);
+      gl::Submission::add(static_cast<double>(kAtOnce * CACHE_LANES) * kIterationsOfPath);
       const gl::ComputePass pass("cache paths from cells", gl::Barrier::storage);
       program.use();
       dispatchListed(pass, program, work);

@@ -3,7 +3,7 @@
 #include "base/error.hpp"
 #include "forward/light_views.hpp"
 #include "gl/pass.hpp"
-#include "gl/pieces.hpp"
+#include "gl/chunks.hpp"
 #include "rays/light_table.hpp"
 #include "shared/bindings.h"
 #include "shared/irradiance_cache.h"
@@ -19,7 +19,7 @@ namespace {
 constexpr GLuint kSlotsBuffer = 1, kKeptBuffer = 2, kPrefetchBuffer = 2, kWorkBeforeBuffer = 3;
 constexpr GLuint kSlotsUnit = 7, kKeysUnit = 1, kSeenUnit = 6;  // where rays are traced, 0 has the materials
 constexpr std::uint32_t kSegmentsOfAll = 64;  // of a path that meets no records; it misses a share of albedo^64
-constexpr std::uint32_t kSoftwareTurns = 2000, kMostTurns = 1u << 16;  // like the path tracer's, less one segment
+constexpr std::uint32_t kSoftwareIterations = 2000, kMostIterations = 1u << 16;  // like the path tracer's, less one segment
 constexpr std::size_t kMostPaths = std::size_t{1} << 20;  // per submission
 constexpr std::size_t kKeyPixels = std::size_t{1} << 23;  // number that a key distinguishes
 
@@ -46,10 +46,10 @@ bool isCut(const Cascade& before, const Cascade& now) {
 
 }  // namespace
 
-bool IrradianceCache::isNeeded(const SceneNeeds& needs, const IrradianceCacheSettings& settings, Light light) {
-  if (settings.transport == CacheTransport::gather) return LightGather::partsOf(needs, settings, light).any();
-  const bool extended = needs.emission || needs.environment;
-  return light == Light::direct ? extended : needs.indirect || extended;
+bool IrradianceCache::isNeeded(const SceneFeatures& features, const IrradianceCacheSettings& settings, Light light) {
+  if (settings.transport == CacheTransport::gather) return LightGather::partsOf(features, settings, light).any();
+  const bool extended = features.emission || features.environment;
+  return light == Light::direct ? extended : features.indirect || extended;
 }
 
 IrradianceCache::IrradianceCache(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, const Scene& scene,
@@ -114,7 +114,7 @@ IrradianceCache::IrradianceCache(gl::ProgramLibrary& programs, const gl::Capabil
                          : settings.bounces == IrradianceCacheSettings::kAllBounces
                              ? 0xffffu
                              : static_cast<std::uint32_t>(settings.bounces) + 1;
-  path_.turns = capabilities.softwareRenderer ? kSoftwareTurns : kMostTurns;
+  path_.iterations = capabilities.softwareRenderer ? kSoftwareIterations : kMostIterations;
 
   const gl::ShaderFlags common = lookupFlags(settings);
   const gl::ShaderFlags rays = rayFlags(lanes);
@@ -291,7 +291,7 @@ void IrradianceCache::light(int target) {
   const gl::ComputePass pass("cache paths", gl::Barrier::storage);
   paths_->use();
   irradiance_.bind(UNIT_CACHE);
-  gl::Submission::add(mostTurns());
+  gl::Submission::add(mostIterations());
   dispatchListed(pass, *paths_, work_[0]);
 }
 
@@ -400,9 +400,9 @@ std::size_t IrradianceCache::mostFrames() const {
   return (lists + 1) * each + 1;
 }
 
-double IrradianceCache::mostTurns() const {
-  if (gather_) return gather_->mostTurns();
-  return static_cast<double>(lit_.bytes() / sizeof(GLuint)) * settings_.rays * kTurnsOfPath;
+double IrradianceCache::mostIterations() const {
+  if (gather_) return gather_->mostIterations();
+  return static_cast<double>(lit_.bytes() / sizeof(GLuint)) * settings_.rays * kIterationsOfPath;
 }
 
 std::size_t IrradianceCache::gpuBytes() const {

@@ -58,7 +58,7 @@ class IrradianceCache {
   IrradianceCache(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, const Scene& scene,
                   const glm::dvec3& origin, const IrradianceCacheSettings& settings, Light light);
 
-  static bool isNeeded(const SceneNeeds& needs, const IrradianceCacheSettings& settings, Light light);
+  static bool isNeeded(const SceneFeatures& features, const IrradianceCacheSettings& settings, Light light);
 
   /// One frame: finds records for visible surfaces, and traces Settings::rays paths for those that lack some,
   /// Settings::leastRays for new ones. rounds: the paths of this many frames at once.
@@ -100,15 +100,15 @@ class IrradianceCache {
   const IrradianceCacheSettings& settings() const { return settings_; }
   std::uint32_t frame() const { return frame_; }  ///< the last update's number
   const gl::Texture& irradiance() const { return irradiance_; }
-  /// Of a submission, at most: the list of records that it works on ends there (gl/pieces.hpp).
-  double mostTurns() const;
+  /// Of a submission, at most: the list of records that it works on ends there (gl/chunks.hpp).
+  double mostIterations() const;
   /// Frames after which no record of a view that stands still lacks paths, at the latest.
   std::size_t mostFrames() const;
   std::size_t gpuBytes() const;
 
  private:
   static constexpr GLuint kRecordsBuffer = 0, kWorkBuffer = 5;  // GL_SHADER_STORAGE_BUFFER
-  static constexpr double kTurnsOfPath = 256.0;  ///< of a lane, approximately (gl/pieces.hpp)
+  static constexpr double kIterationsOfPath = 256.0;  ///< of a lane, approximately (gl/chunks.hpp)
   // Words of shaders/irradiance_cache/work.glsl.
   static constexpr std::size_t kWanted = 3, kWaiting = 4, kFrame = 5, kLitGroups = 6, kWorkWords = 36;
   static std::array<GLuint, kWorkWords> noWork();  ///< groups of all dispatches: 0 by 1 by 1

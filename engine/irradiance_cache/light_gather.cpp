@@ -2,7 +2,7 @@
 
 #include "base/error.hpp"
 #include "gl/pass.hpp"
-#include "gl/pieces.hpp"
+#include "gl/chunks.hpp"
 #include "irradiance_cache/bounce_cache.hpp"
 #include "irradiance_cache/emission_points.hpp"
 #include "rays/light_table.hpp"
@@ -57,11 +57,11 @@ struct LightGather::Targets {
   const gl::Buffer* groups = nullptr;
   std::size_t offset = 0, count = 0;
 
-  /// turns: of a lane.
-  void dispatch(const gl::ComputePass& pass, const gl::Program& program, double turns) const {
+  /// iterations: of a lane.
+  void dispatch(const gl::ComputePass& pass, const gl::Program& program, double iterations) const {
     for (std::size_t first = 0; first < count; first += CACHE_PART_GROUPS) {
       const std::size_t size = std::min<std::size_t>(count - first, CACHE_PART_GROUPS);
-      gl::Submission::add(turns * CACHE_LANES * static_cast<double>(size));
+      gl::Submission::add(iterations * CACHE_LANES * static_cast<double>(size));
       program.set("firstGroup", static_cast<unsigned>(first));
       if (groups) pass.dispatchIndirect(*groups, offset + first / CACHE_PART_GROUPS * 3 * sizeof(GLuint));
       else pass.dispatch(glm::ivec3(static_cast<int>(size), 1, 1), glm::ivec3(1));
@@ -69,25 +69,25 @@ struct LightGather::Targets {
   }
 };
 
-double LightGather::turnsOfLane(int depth, int top, int layers) {
+double LightGather::iterationsOfLane(int depth, int top, int layers) {
   const double coarsest = std::ceil(layers * std::exp2(2 * top) / CACHE_LANES);
   // Opening; then three siblings on each level, and the coarsest nodes. Texels near by. The way to a leaf, and a ray.
-  return CACHE_MOST_OPENING + 3.0 * (depth - top) + coarsest + CACHE_MOST_NEAR + 4.0 * depth + gl::kTurnsOfRay;
+  return CACHE_MOST_OPENING + 3.0 * (depth - top) + coarsest + CACHE_MOST_NEAR + 4.0 * depth + gl::kIterationsOfRay;
 }
 
-double LightGather::mostTurns() const {
-  const double turns = std::max(turnsOfLane(kDeepest, LightTree::kTop, 6), kRaysOfLane * gl::kTurnsOfRay);
-  return turns * CACHE_LANES * CACHE_PART_GROUPS;
+double LightGather::mostIterations() const {
+  const double iterations = std::max(iterationsOfLane(kDeepest, LightTree::kTop, 6), kRaysOfLane * gl::kIterationsOfRay);
+  return iterations * CACHE_LANES * CACHE_PART_GROUPS;
 }
 
-LightGather::Parts LightGather::partsOf(const SceneNeeds& needs, const IrradianceCacheSettings& settings,
+LightGather::Parts LightGather::partsOf(const SceneFeatures& features, const IrradianceCacheSettings& settings,
                                         CachedLight light) {
   const bool own = light != CachedLight::indirect, reflected = light != CachedLight::direct;
-  const bool extended = needs.emission || needs.environment, lamps = needs.anyLight() && needs.indirect;
+  const bool extended = features.emission || features.environment, lamps = features.anyLight() && features.indirect;
   Parts parts;
   parts.maps = lamps && reflected;
   parts.bounces = reflected && (extended || (lamps && settings.bounces != 1));
-  parts.emission = needs.emission && (own || parts.bounces);
+  parts.emission = features.emission && (own || parts.bounces);
   parts.hemisphere = parts.bounces || (own && extended);
   parts.mapsOfBounces = parts.bounces && lamps && settings.bounces != 1;
   return parts;
@@ -97,8 +97,8 @@ LightGather::LightGather(gl::ProgramLibrary& programs, const gl::Capabilities& c
                          const glm::dvec3& origin, const IrradianceCacheSettings& settings, CachedLight light,
                          const PathScene& paths, const gl::ShaderFlags& common)
     : visibility_(settings.visibility), programs_(&programs), capabilities_(&capabilities), paths_(&paths) {
-  const SceneNeeds needs = analyse(scene);
-  parts_ = partsOf(needs, settings, light);
+  const SceneFeatures features = analyse(scene);
+  parts_ = partsOf(features, settings, light);
   const bool own = ownEmission_ = light != CachedLight::indirect;
   const gl::ShaderFlags rays = gl::with(
       gl::with(common, paths.flags()),
@@ -111,8 +111,8 @@ LightGather::LightGather(gl::ProgramLibrary& programs, const gl::Capabilities& c
                                                  {"NEAR", static_cast<int>(RsmGather::Near::quad)},
                                                  {"MAP_LIGHT", 0}}));
   };
-  if (parts_.maps && needs.directionalLight) sun_ = load("cache gather sun", false, false);
-  if (parts_.maps && (needs.spotLights || needs.pointLights)) lamp_ = load("cache gather lamp", true, false);
+  if (parts_.maps && features.directionalLight) sun_ = load("cache gather sun", false, false);
+  if (parts_.maps && (features.spotLights || features.pointLights)) lamp_ = load("cache gather lamp", true, false);
   if (parts_.emission) {
     emission_ = load("cache gather emission", true, true);
     makeEmission(programs, capabilities, scene, origin);
@@ -217,7 +217,7 @@ void LightGather::gatherTree(const gl::Program& program, const ReflectiveShadowM
     map.position.bind(kMapUnits), map.normal.bind(kMapUnits + 1), map.flux.bind(kMapUnits + 2);
   else if (&program == sun_) map.bind();
   tree.bind(program, kTreeUnit);
-  targets.dispatch(pass, program, turnsOfLane(tree.depth(), tree.top(), tree.layers()));
+  targets.dispatch(pass, program, iterationsOfLane(tree.depth(), tree.top(), tree.layers()));
 }
 
 void LightGather::gatherHemisphere(const gl::Program& program, const Targets& targets, bool last) const {
@@ -236,7 +236,7 @@ void LightGather::gatherHemisphere(const gl::Program& program, const Targets& ta
     places_.bind(kPlacesUnit);
     places_.buffer().bindStorage(kBouncedBuffer);
   }
-  targets.dispatch(pass, program, kRaysOfLane * gl::kTurnsOfRay);
+  targets.dispatch(pass, program, kRaysOfLane * gl::kIterationsOfRay);
 }
 
 void LightGather::update(const std::vector<ReflectiveShadowMap::Outputs>& maps, bool mapsAreNew) {

@@ -33,7 +33,7 @@ class LightGather {
     bool mapsOfBounces = false;  ///< they gather from the lights' maps too
     bool any() const { return maps || emission || hemisphere; }
   };
-  static Parts partsOf(const SceneNeeds& needs, const IrradianceCacheSettings& settings, CachedLight light);
+  static Parts partsOf(const SceneFeatures& features, const IrradianceCacheSettings& settings, CachedLight light);
 
   /// `scene`: as loaded. `origin`: of the frame's positions, in the scene's coordinates. common: flags of
   /// irradiance_cache/common.glsl.
@@ -50,8 +50,8 @@ class LightGather {
               std::size_t most);
   void forget() { stale_ = true; }
   /// Of a lane that gathers from a light tree, at most: nodes and texels that it visits, and its ray.
-  static double turnsOfLane(int depth, int top, int layers);
-  double mostTurns() const;  ///< of a submission, at most
+  static double iterationsOfLane(int depth, int top, int layers);
+  double mostIterations() const;  ///< of a submission, at most
   std::size_t gpuBytes() const;
 
  private:

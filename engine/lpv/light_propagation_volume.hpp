@@ -21,7 +21,7 @@ class LightPropagationVolume {
  public:
   /// Flags of shaders/lpv/lookup.glsl, for the programs that include it.
   static gl::ShaderFlags lookupFlags(const LpvSettings& settings);
-  static bool isNeeded(const SceneNeeds& needs) { return ReflectiveShadowMap::isNeeded(needs); }
+  static bool isNeeded(const SceneFeatures& features) { return ReflectiveShadowMap::isNeeded(features); }
 
   LightPropagationVolume(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities,
                          const LpvSettings& settings);

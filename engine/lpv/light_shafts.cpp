@@ -11,7 +11,7 @@ namespace lucerna {
 namespace {
 
 constexpr int kGroup = 8;  // pixels each way of a work group
-constexpr double kTurnsOfStep = 8.0;  // lookups in the sun's maps and the volume's cascades
+constexpr double kIterationsOfStep = 8.0;  // lookups in the sun's maps and the volume's cascades
 
 }  // namespace
 
@@ -37,7 +37,7 @@ std::optional<Haze> hazeOf(const Scene& scene) {
 }
 
 LightShafts::LightShafts(gl::ProgramLibrary& programs, const Haze& haze, const Settings& settings)
-    : steps_(settings.steps), pieces_(settings.unmeasuredTurns) {
+    : steps_(settings.steps), chunks_(settings.unmeasuredIterations) {
   gl::ShaderFlags flags{{"SUN", settings.sun},
                         {"SUN_CASCADES", settings.sunCascades},
                         {"PROPAGATED", settings.volume},
@@ -65,7 +65,7 @@ void LightShafts::record(const gl::Texture& radiance, const gl::Texture& depth, 
   bind();
   depth.bind(0);
   radiance.bindImage(0, gl::Access::readWrite);
-  pieces_.forEach(radiance.size2d(), kTurnsOfStep * steps_, kGroup,
+  chunks_.forEach(radiance.size2d(), kIterationsOfStep * steps_, kGroup,
                   [&](const glm::ivec2& corner, const glm::ivec2& size) {
                     program_->set("firstPixel", corner);
                     pass.dispatch(glm::ivec3(size, 1), glm::ivec3(kGroup, kGroup, 1));

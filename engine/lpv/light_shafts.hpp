@@ -5,7 +5,7 @@
 #pragma once
 
 #include "gl/objects.hpp"
-#include "gl/picture_pieces.hpp"
+#include "gl/picture_chunks.hpp"
 #include "gl/program.hpp"
 #include "scene/scene.hpp"
 
@@ -33,21 +33,21 @@ class LightShafts {
     bool sun = true, volume = true;  ///< whether its light scatters
     bool fullFloat = false;  ///< radiance in 32 bits, otherwise 16
     gl::ShaderFlags lookup;  ///< of the volume (LightPropagationVolume::lookupFlags); not read without it
-    double unmeasuredTurns = gl::kUnmeasuredTurns;  ///< of a submission where a frame is cut (gl/picture_pieces.hpp)
+    double unmeasuredIterations = gl::kUnmeasuredIterations;  ///< of a submission where a frame is cut (gl/picture_chunks.hpp)
   };
   LightShafts(gl::ProgramLibrary& programs, const Haze& haze, const Settings& settings);
 
   /// For every program with the flag HAZE: attenuates light that arrives through the medium.
   void bind() const;
   void record(const gl::Texture& radiance, const gl::Texture& depth, const glm::dmat4& clipFromWorld);
-  double largestTurns() const { return pieces_.largestTurns(); }  ///< estimated, of the largest submission so far
+  double largestIterations() const { return chunks_.largestIterations(); }  ///< estimated, of the largest submission so far
   std::size_t gpuBytes() const { return constants_.bytes(); }
 
  private:
   const gl::Program* program_;
   gl::Buffer constants_;
   int steps_;
-  gl::PicturePieces pieces_;
+  gl::PictureChunks chunks_;
 };
 
 }  // namespace lucerna

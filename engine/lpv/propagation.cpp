@@ -2,7 +2,7 @@
 
 #include "gl/draw.hpp"
 #include "gl/pass.hpp"
-#include "gl/pieces.hpp"
+#include "gl/chunks.hpp"
 
 #include <vector>
 
@@ -89,7 +89,7 @@ void LpvComputePropagation::run(const LpvVolume& source, LpvInjection& injection
       listBricks_->use();
       pass.dispatch(glm::ivec3(brickCount_, 1, 1), glm::ivec3(64, 1, 1));
     }
-    gl::Submission::add(kTurnsOfPropagation * size_.x * size_.y * size_.z);
+    gl::Submission::add(kIterationsOfPropagation * size_.x * size_.y * size_.z);
     const gl::ComputePass pass("lpv propagate", gl::Barrier::textureFetch | gl::Barrier::storage);
     (step == 0 ? first_ : further_)->use();
     const gl::BufferTexture& sums = settings_.joins() && step >= settings_.handOver ? farSums_ : sums_;
@@ -152,7 +152,7 @@ void LpvLayeredPropagation::run(const LpvVolume& source, const LpvGeometryVolume
     gl::RasterState state;
     state.blend = gl::Blend::add;
     state.firstBlended = 3;
-    gl::Submission::add(kTurnsOfPropagation * cells * cells * cells * settings_.cascades.cascades);
+    gl::Submission::add(kIterationsOfPropagation * cells * cells * cells * settings_.cascades.cascades);
     const gl::RasterPass pass("lpv propagate layered", targets_[next][far ? 1 : 0], state);
     const gl::Program& program = step == 0 ? *first_ : *further_;
     program.use();

@@ -10,8 +10,8 @@
 
 namespace lucerna {
 
-/// Of a cell and step (gl/pieces.hpp): 6 neighbours, 5 faces each.
-constexpr double kTurnsOfPropagation = 30.0;
+/// Of a cell and step (gl/chunks.hpp): 6 neighbours, 5 faces each.
+constexpr double kIterationsOfPropagation = 30.0;
 
 /// Gathers in the cells that light has reached, brick by brick (lpv/propagate.comp). Fronts and sums are buffers of
 /// three channels, one after the other.

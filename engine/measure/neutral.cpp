@@ -1,7 +1,7 @@
 #include "measure/neutral.hpp"
 
 #include "base/error.hpp"
-#include "scene/needs.hpp"
+#include "scene/features.hpp"
 
 #include <algorithm>
 

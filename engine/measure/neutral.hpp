@@ -10,7 +10,7 @@
 
 namespace lucerna::measure {
 
-/// The needs of SceneNeeds for which neutral data exist.
+/// The needs of SceneFeatures for which neutral data exist.
 const std::vector<std::string>& neutralNeeds();
 /// Adds the data that cause the need: a white texture, a mask that cuts nothing out, a light of 1e-30. No effect if the
 /// need already exists or nothing is drawn.

@@ -27,12 +27,12 @@ constexpr int kGroupSide = 8;
 constexpr int kClearanceCells = 64;
 // llvmpipe leaves all loops of a shader after 65,535 iterations, counted together for all lanes of a vector (8, at most
 // 16).
-constexpr std::uint32_t kSoftwareTurns = 3500, kMostTurns = 1u << 16;
+constexpr std::uint32_t kSoftwareIterations = 3500, kMostIterations = 1u << 16;
 constexpr double kLanesOfTile =
-    512.0 * 512.0;  // on a GPU; a smaller tile, also on a software renderer, begins with as many turns per lane
+    512.0 * 512.0;  // on a GPU; a smaller tile, also on a software renderer, begins with as many iterations per lane
 /// The beginning of StateBlock (path.glsl); std430 aligns the following vectors of the lanes to 16 bytes.
 struct StateHeader {
-  std::uint32_t unfinished = 0, leakedPaths = 0, wrongCrossings = 0, longest = 0, allTurns = 0, collisions = 0,
+  std::uint32_t unfinished = 0, leakedPaths = 0, wrongCrossings = 0, longest = 0, allIterations = 0, collisions = 0,
                 padding[2]{};
 };
 constexpr std::size_t kStateHeaderBytes = sizeof(StateHeader), kVec4Bytes = 16;
@@ -84,37 +84,37 @@ int tileSideOn(const gl::Capabilities& capabilities, std::size_t stateWords) {
 PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
                        const Settings& settings)
     : settings_(settings),
-      needs_(analyse(scene)),
+      features_(analyse(scene)),
       constantsBuffer_("path constants", sizeof(shared::PathConstants), nullptr, gl::Usage::dynamicDraw),
-      mostTurns_(context.capabilities().softwareRenderer ? kSoftwareTurns : kMostTurns),
+      mostIterations_(context.capabilities().softwareRenderer ? kSoftwareIterations : kMostIterations),
       clearTexture_(context.capabilities().clearTexture),
-      turns_(settings.submissionSeconds, kLanesOfTile, mostTurns_) {
+      iterations_(settings.submissionSeconds, kLanesOfTile, mostIterations_) {
   const gl::Capabilities& capabilities = context.capabilities();
   CHECK(settings.size.x > 0 && settings.size.y > 0, "{} x {} pixels", settings.size.x, settings.size.y);
-  if (settings.diffuseOnly) needs_.mirrors = needs_.conductors = needs_.dielectrics = needs_.roughDielectrics = false;
+  if (settings.diffuseOnly) features_.mirrors = features_.conductors = features_.dielectrics = features_.roughDielectrics = false;
 
   boundaries_ = rankBoundaries(scene, settings.diffuseOnly);
   touching_ = boundariesMayTouch(scene, boundaries_);
-  lampsOutside_ = needs_.dielectrics && !settings.deviations.straightShadowRays && areLampsOutside(scene, boundaries_);
+  lampsOutside_ = features_.dielectrics && !settings.deviations.straightShadowRays && areLampsOutside(scene, boundaries_);
   const bool published = settings.deviations.distanceWithoutPdf || settings.deviations.boostedInteraction;
-  needs_.denseMedia =
-      needs_.denseMedia && needs_.dielectrics && settings.walks && !published && (!settings.nextEvent || lampsOutside_);
-  scene_.emplace(scene, needs_, capabilities,
+  features_.denseMedia =
+      features_.denseMedia && features_.dielectrics && settings.walks && !published && (!settings.nextEvent || lampsOutside_);
+  scene_.emplace(scene, features_, capabilities,
                  PathScene::Settings{settings.diffuseOnly, settings.nextEvent, settings.rays},
                  boundaries_.rankOfMaterial);
   scene_->fill(constants_);
   sceneHash_ = scene_->hash();
-  if (needs_.denseMedia) addClearances(scene);
-  if (needs_.dielectrics || needs_.nullBoundaries)
+  if (features_.denseMedia) addClearances(scene);
+  if (features_.dielectrics || features_.nullBoundaries)
     interiors_ = storageOf("path interiors", boundaries_.interiors, capabilities);
-  if (needs_.media) {
+  if (features_.media) {
     const PackedMedia packed = packMedia(scene.media, scene_->origin());
     media_ = storageOf("path media", packed.media, capabilities);
     interiors_ = storageOf("path interiors", boundaries_.interiors, capabilities);
     outerMedium_ = scene.cameraMedium;
     const auto add = [&](const auto& values) { sceneHash_.bytes(values.data(), values.size() * sizeof values[0]); };
     add(packed.media), add(packed.grids), add(packed.densities);
-    if (needs_.heterogeneousMedia) {
+    if (features_.heterogeneousMedia) {
       grids_ = storageOf("path density grids", packed.grids, capabilities);
       densities_ = storageOf("path densities", packed.densities, capabilities);
     }
@@ -164,21 +164,21 @@ void PathTracer::resize(glm::ivec2 size) {
 gl::ShaderFlags PathTracer::flags() const {
   const bool asked = scene_->hasLights();
   gl::ShaderFlags all = scene_->flags();
-  all.insert(all.end(), {{"MIRRORS", needs_.mirrors},
-                         {"DIELECTRICS", needs_.dielectrics},
+  all.insert(all.end(), {{"MIRRORS", features_.mirrors},
+                         {"DIELECTRICS", features_.dielectrics},
                          {"INTERIORS", hasInteriors()},
                          {"TOUCHING", hasInteriors() && touching_},
-                         {"MEDIA", needs_.media},
+                         {"MEDIA", features_.media},
                          {"LAMPS_OUTSIDE", lampsOutside_},
-                         {"WALKS", needs_.denseMedia},
-                         {"HETEROGENEOUS", needs_.heterogeneousMedia},
-                         {"VOLUME_EMISSION", needs_.volumeEmission},
-                         {"GLOSSY", needs_.conductors || needs_.roughDielectrics},
-                         {"ROUGH_DIELECTRICS", needs_.roughDielectrics},
-                         {"BACKGROUND", needs_.background},
-                         {"MIS", asked && (needs_.emission || needs_.environmentPicture) &&
+                         {"WALKS", features_.denseMedia},
+                         {"HETEROGENEOUS", features_.heterogeneousMedia},
+                         {"VOLUME_EMISSION", features_.volumeEmission},
+                         {"GLOSSY", features_.conductors || features_.roughDielectrics},
+                         {"ROUGH_DIELECTRICS", features_.roughDielectrics},
+                         {"BACKGROUND", features_.background},
+                         {"MIS", asked && (features_.emission || features_.environmentPicture) &&
                                      settings_.transport != Transport::oneBounceUnoccluded},
-                         {"SCATTERED_LIGHT", needs_.emission || needs_.environment || needs_.volumeEmission},
+                         {"SCATTERED_LIGHT", features_.emission || features_.environment || features_.volumeEmission},
                          {"DISTANCE_WITHOUT_PDF", settings_.deviations.distanceWithoutPdf},
                          {"BOOSTED_INTERACTION", settings_.deviations.boostedInteraction},
                          {"ROULETTE_WITHOUT_DIVISION", settings_.deviations.rouletteWithoutDivision},
@@ -230,8 +230,8 @@ void PathTracer::addClearances(const Scene& scene) {
     interior.size = glm::ivec4(grid.size, 0);
     radii.insert(radii.end(), grid.radius.begin(), grid.radius.end());
   }
-  needs_.denseMedia = !radii.empty();
-  if (needs_.denseMedia)
+  features_.denseMedia = !radii.empty();
+  if (features_.denseMedia)
     clearances_ = gl::BufferTexture("path clearances", gl::Format::r32f, radii.size() * sizeof(float), radii.data());
 }
 
@@ -255,7 +255,7 @@ void PathTracer::setCamera(const Camera& camera) {
     cameraInside_ = surroundings.inside;
     cameraIor_ = iorInside(boundaries_, cameraInside_);
   }
-  leakedPaths_ = wrongCrossings_ = turnsTaken_ = collisions_ = 0.0;
+  leakedPaths_ = wrongCrossings_ = iterationsTaken_ = collisions_ = 0.0;
   const std::array<const gl::Texture*, 3> film{&filmMean_, &filmSpread_, &filmRest_};
   gl::clearToZero(film, clearTexture_);
   constants_.picture.w = 0;
@@ -272,7 +272,7 @@ void PathTracer::setFirstSample(std::uint32_t first) {
 std::uint64_t PathTracer::identity() const {
   shared::PathConstants constants = constants_;
   constants.tile = glm::ivec4(0);
-  constants.sampleTarget = constants.turns = 0;
+  constants.sampleTarget = constants.iterations = 0;
   constants.picture.z = constants.picture.w = 0;  // parts of the samples belong to the same picture
   Hash hash = sceneHash_;
   hash.bytes(&constants, sizeof constants);
@@ -368,7 +368,7 @@ bool PathTracer::submit(std::uint32_t samples, Passes passes) {
   if (passTarget_ == done_ || passTarget_ > samples) {
     // At the end of a pass, lanes wait for the last path of a tile. With passes that double the samples they wait
     // rarely, and pictures still come early.
-    const std::uint32_t most = settings_.askedPixel ? kAskedSamples : needs_.media ? 1024 : 64;
+    const std::uint32_t most = settings_.askedPixel ? kAskedSamples : features_.media ? 1024 : 64;
     passTarget_ = done_ + std::min(samples - done_, passes == Passes::whole ? most : std::clamp(done_, 1u, most));
     if (!tileBegun_) tile_ = 0;
   }
@@ -377,8 +377,8 @@ bool PathTracer::submit(std::uint32_t samples, Passes passes) {
   const bool begins = !tileBegun_;
   if (begins) {
     state_.clear();
-    turns_.restart();
-    turns_.setTurnsOfUnit(lanes);
+    iterations_.restart();
+    iterations_.setIterationsOfUnit(lanes);
     gl::copyTexels(filmMean_, corner, kept_[0], {0, 0}, size);
     gl::copyTexels(filmSpread_, corner, kept_[1], {0, 0}, size);
     gl::copyTexels(filmRest_, corner, kept_[2], {0, 0}, size);
@@ -392,7 +392,7 @@ bool PathTracer::submit(std::uint32_t samples, Passes passes) {
   const std::uint32_t unfinished = header.unfinished;
   leakedPaths_ += header.leakedPaths;
   wrongCrossings_ += header.wrongCrossings;
-  turnsTaken_ += header.allTurns;
+  iterationsTaken_ += header.allIterations;
   collisions_ += header.collisions;
   gl::throwIfReset();
   gl::throwIfError("path tracing");
@@ -400,8 +400,8 @@ bool PathTracer::submit(std::uint32_t samples, Passes passes) {
   largest_ = std::max(largest_, taken);
   if (begins) largestBegun_ = std::max(largestBegun_, taken);
   const double seconds = secondsSince(start);
-  turns_.setTurnsOfUnit(std::max(unfinished, 1u));  // the others are finished
-  turns_.took(turns_.units(), seconds);
+  iterations_.setIterationsOfUnit(std::max(unfinished, 1u));  // the others are finished
+  iterations_.took(iterations_.units(), seconds);
   tileBegun_ = unfinished > 0;
   if (!tileBegun_ && settings_.askedPixel) readAsked();
   if (!tileBegun_ && ++tile_ == tileCount()) {
@@ -414,7 +414,7 @@ bool PathTracer::submit(std::uint32_t samples, Passes passes) {
 void PathTracer::dispatch(glm::ivec2 corner, glm::ivec2 size, std::uint32_t target) {
   constants_.tile = glm::ivec4(corner, size);
   constants_.sampleTarget = target;
-  constants_.turns = turns_.units();
+  constants_.iterations = iterations_.units();
   constantsBuffer_.upload(0, sizeof constants_, &constants_);
   const gl::ComputePass pass("path tracing", gl::Barrier::storage | gl::Barrier::image | gl::Barrier::textureFetch,
                              gl::Barrier::image);
@@ -429,9 +429,9 @@ void PathTracer::dispatch(glm::ivec2 corner, glm::ivec2 size, std::uint32_t targ
     program_->set("cameraInside", cameraInside_);
     program_->set("cameraIor", cameraIor_);
   }
-  if (needs_.denseMedia) clearances_.bind(kClearancesUnit);
-  if (needs_.media) media_.bindStorage(kMediaBinding);
-  if (needs_.heterogeneousMedia) {
+  if (features_.denseMedia) clearances_.bind(kClearancesUnit);
+  if (features_.media) media_.bindStorage(kMediaBinding);
+  if (features_.heterogeneousMedia) {
     grids_.bindStorage(kGridsBinding);
     densities_.bindStorage(kDensitiesBinding);
   }
@@ -488,7 +488,7 @@ PathTracer::Statistics PathTracer::statistics() const {
   result.relativeError = film.relativeError;
   result.leakedPaths = leakedPaths_;
   result.wrongCrossings = wrongCrossings_;
-  result.turns = turnsTaken_;
+  result.iterations = iterationsTaken_;
   result.collisions = collisions_;
   return result;
 }

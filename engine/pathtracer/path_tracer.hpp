@@ -10,13 +10,13 @@
 #include "base/image.hpp"
 #include "gl/context.hpp"
 #include "gl/objects.hpp"
-#include "gl/pieces.hpp"
+#include "gl/chunks.hpp"
 #include "gl/program.hpp"
 #include "gl/read_back.hpp"
 #include "pathtracer/media.hpp"
 #include "pathtracer/path_deviations.hpp"
 #include "rays/path_scene.hpp"
-#include "scene/needs.hpp"
+#include "scene/features.hpp"
 #include "scene/scene.hpp"
 #include "scene/transport.hpp"
 
@@ -70,7 +70,7 @@ class PathTracer {
     double leakedPaths = 0.0;  ///< ended because found outside the scene yet inside a closed boundary, since setCamera
     double wrongCrossings =
         0.0;  ///< of boundaries left without having been entered, or entered too often: open or turned meshes
-    double turns = 0.0;  ///< of loops, in all lanes since setCamera: rays' nodes and triangles, steps in media: what
+    double iterations = 0.0;  ///< of loops, in all lanes since setCamera: rays' nodes and triangles, steps in media: what
                          ///< time is spent on, whatever the clock
     double collisions = 0.0;  ///< in media, likewise
     double relativeError =
@@ -117,10 +117,10 @@ class PathTracer {
   /// setting.
   void resume(const std::vector<std::uint8_t>& bytes, const std::string& name);
   const Settings& settings() const { return settings_; }
-  const SceneNeeds& needs() const { return needs_; }
+  const SceneFeatures& features() const { return features_; }
   std::size_t gpuBytes() const;
-  /// Number of lanes times turns of the slowest lane, for the largest submission so far; `begun`: among those that
-  /// began a tile, whose cost was unknown. A lane begins no segment after its share of turns, so it exceeds the share
+  /// Number of lanes times iterations of the slowest lane, for the largest submission so far; `begun`: among those that
+  /// began a tile, whose cost was unknown. A lane begins no segment after its share of iterations, so it exceeds the share
   /// by at most one segment.
   struct Submissions {
     std::uint64_t largest = 0, begun = 0;
@@ -139,7 +139,7 @@ class PathTracer {
   /// With flags that do not affect the picture but how it is computed.
   gl::ShaderFlags kernelFlags() const;
   std::size_t stateWords() const;  // of a lane in state_, in uvec4
-  bool hasInteriors() const { return needs_.dielectrics || needs_.nullBoundaries || needs_.media; }
+  bool hasInteriors() const { return features_.dielectrics || features_.nullBoundaries || features_.media; }
   /// Grids of distances to the nearest triangle for the boundaries of dense media.
   void addClearances(const Scene& scene);
   enum class Passes { doubling, whole };
@@ -153,7 +153,7 @@ class PathTracer {
   void readAsked();
 
   Settings settings_;
-  SceneNeeds needs_;
+  SceneFeatures features_;
   std::optional<PathScene> scene_;  ///< always set after construction
   shared::PathConstants constants_{};
   const gl::Program* program_ = nullptr;
@@ -166,13 +166,13 @@ class PathTracer {
   bool lampsOutside_ = false;  ///< none lies within a dielectric
   gl::Buffer media_, interiors_, grids_, densities_;
   gl::BufferTexture clearances_;
-  double leakedPaths_ = 0.0, wrongCrossings_ = 0.0, turnsTaken_ = 0.0, collisions_ = 0.0;
+  double leakedPaths_ = 0.0, wrongCrossings_ = 0.0, iterationsTaken_ = 0.0, collisions_ = 0.0;
   gl::Buffer state_, constantsBuffer_;
   gl::Staging counters_{"path counters"};
   gl::Texture filmMean_, filmSpread_, filmRest_;
   std::array<gl::Texture, 3> kept_;  ///< copy of the current tile before the pass
   int tileSide_ = 0;
-  std::uint32_t mostTurns_;  ///< per lane and submission
+  std::uint32_t mostIterations_;  ///< per lane and submission
   bool clearTexture_;
   Hash sceneHash_;
 
@@ -180,7 +180,7 @@ class PathTracer {
   std::uint32_t done_ = 0, passTarget_ = 0;
   int tile_ = 0;
   bool tileBegun_ = false;
-  gl::PieceSize turns_;  ///< per lane, in the next submission
+  gl::ChunkSize iterations_;  ///< per lane, in the next submission
   std::uint64_t largestBegun_ = 0, largest_ = 0;
   std::vector<AskedLight> asked_;
 };

@@ -1,6 +1,6 @@
 #include "radiosity/direct_rays.hpp"
 
-#include "gl/pieces.hpp"
+#include "gl/chunks.hpp"
 #include "radiosity/patches.hpp"
 
 #include <algorithm>
@@ -62,7 +62,7 @@ DirectRays::DirectRays(const Scene& scene, const gl::Capabilities& capabilities,
   // GL buffers cannot be empty: without lights upload one dummy; the count in the head is 0.
   const double raysOfPixel =
       static_cast<double>(emitters.size()) * each + static_cast<double>(lights.size() - emitters.size());
-  turnsOfPixel_ = gl::kTurnsOfRay * std::max(raysOfPixel, 1.0);
+  iterationsOfPixel_ = gl::kIterationsOfRay * std::max(raysOfPixel, 1.0);
   const int head[4] = {static_cast<int>(lights.size()), each, 0, 0};
   std::vector<std::uint8_t> bytes;
   const auto put = [&](const void* data, std::size_t size) {

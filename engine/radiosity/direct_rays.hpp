@@ -22,14 +22,14 @@ class DirectRays {
   DirectRays(const Scene& scene, const gl::Capabilities& capabilities, int rays,
              const glm::dvec3& origin = glm::dvec3(0.0));
   void bind() const;  ///< storage block 1, texture units 60 and 61
-  /// Estimated work per pixel: gl/pieces.hpp.
-  double turnsOfPixel() const { return turnsOfPixel_; }
+  /// Estimated work per pixel: gl/chunks.hpp.
+  double iterationsOfPixel() const { return iterationsOfPixel_; }
   std::size_t gpuBytes() const { return rays_.gpuBytes() + lights_.bytes(); }
 
  private:
   RayScene rays_;
   gl::Buffer lights_;
-  double turnsOfPixel_ = 1.0;
+  double iterationsOfPixel_ = 1.0;
 };
 
 }  // namespace lucerna

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/named_values.hpp"
-#include "gl/pieces.hpp"
+#include "gl/chunks.hpp"
 #include "radiosity/hemicube_map.hpp"
 
 #include <array>
@@ -37,8 +37,8 @@ struct HemicubeSettings {
   int exactPixels = 12;  ///< patches that cover this many pixels get their closed form; 0: never
   float nearDistance = 3.0f;  ///< receivers are divided until (distance / size of a part) is this; 0: never
   int mostParts = 8;  ///< most parts per side of a receiver
-  /// Loop iterations of a first submission (gl/pieces.hpp). The rows are the same, bit by bit.
-  double unmeasuredIterations = gl::kUnmeasuredTurns;
+  /// Loop iterations of a first submission (gl/chunks.hpp). The rows are the same, bit by bit.
+  double unmeasuredIterations = gl::kUnmeasuredIterations;
   std::size_t batchBytes = 0;  ///< of GPU memory per batch and buffer; 0: automatic
 };
 

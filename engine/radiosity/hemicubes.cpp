@@ -23,13 +23,13 @@ constexpr double kIterationsOfPixel = 32.0;  // by raster: a pixel's layers
 constexpr int kMeasured = 32;  // hemicubes in a batch for measuring the cost
 constexpr int kCompared = 8;  // hemicubes whose sights are compared
 
-/// Approximate loop iterations of a hemicube (gl/pieces.hpp), by method.
+/// Approximate loop iterations of a hemicube (gl/chunks.hpp), by method.
 struct Iterations {
   double rays, raster;
 };
 Iterations iterationsOfHemicube(const RadiosityMesh& mesh, int resolution) {
   const double pixels = 3.0 * resolution * resolution, patches = static_cast<double>(mesh.patches.size());
-  return {gl::kTurnsOfRay * pixels, kIterationsOfPatch * patches + kIterationsOfPixel * pixels};
+  return {gl::kIterationsOfRay * pixels, kIterationsOfPatch * patches + kIterationsOfPixel * pixels};
 }
 
 double mostIterationsOfHemicube(const RadiosityMesh& mesh, int resolution) {

@@ -54,8 +54,8 @@ class Hemicubes {
   const std::vector<std::uint32_t>& smallSources() const;
   /// Rows of `count` hemicubes from `first`, at most batchSize(); waits for them.
   FormFactorRows rows(int first, int count);
-  /// Estimated loop iterations of the largest submission so far (gl/pieces.hpp).
-  double largestIterations() const { return chunks_.largestTurns(); }
+  /// Estimated loop iterations of the largest submission so far (gl/chunks.hpp).
+  double largestIterations() const { return chunks_.largestIterations(); }
   /// Rows first..end - 1, chunk by chunk: while the GPU draws one, another thread makes rows of the previous one and
   /// passes them to `take`, in order and never two at once. `goOn` is called on this thread after each chunk, with the
   /// patches drawn so far; false stops.
@@ -83,7 +83,7 @@ class Hemicubes {
   std::unique_ptr<HemicubeMethod> method_;
   const gl::Program *sum_ = nullptr, *sumLarge_ = nullptr, *exact_ = nullptr;
   gl::Staging staging_{"hemicube results"};
-  gl::PieceSize chunks_;  ///< hemicubes per submission
+  gl::ChunkSize chunks_;  ///< hemicubes per submission
 };
 
 }  // namespace lucerna

@@ -9,7 +9,7 @@
 #include "radiosity/hemicubes.hpp"
 #include "radiosity/hidden_parts.hpp"
 #include "radiosity/row_file.hpp"
-#include "scene/needs.hpp"
+#include "scene/features.hpp"
 
 #include <algorithm>
 #include <cmath>

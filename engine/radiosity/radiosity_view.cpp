@@ -81,7 +81,7 @@ RadiosityView::RadiosityView(const gl::Context& context, gl::ProgramLibrary& pro
 SurfacePrograms RadiosityView::loadPrograms(gl::ProgramLibrary& programs, const GpuScene& gpuScene, bool asked) const {
   const auto load = [&](const char* name, bool masked) {
     gl::ShaderFlags flags = gpuScene.materialFlags(masked);
-    flags.insert(flags.end(), {{"EMISSION", gpuScene.needs().emission && settings_.light != Light::indirect},
+    flags.insert(flags.end(), {{"EMISSION", gpuScene.features().emission && settings_.light != Light::indirect},
                                {"MESH", settings_.mesh},
                                {"DIRECT_RAYS", takesDirectRays()},
                                {"ALPHA_MASKS", 0},
@@ -91,7 +91,7 @@ SurfacePrograms RadiosityView::loadPrograms(gl::ProgramLibrary& programs, const 
   };
   SurfacePrograms result;
   result.opaque = load("radiosity opaque", false);
-  if (gpuScene.needs().alphaMasks) result.masked = load("radiosity masked", true);
+  if (gpuScene.features().alphaMasks) result.masked = load("radiosity masked", true);
   return result;
 }
 

@@ -98,7 +98,7 @@ FormFactorParts::FormFactorParts(const gl::Context& context, gl::ProgramLibrary&
                                  const RadiositySolutionSettings& askedSettings)
     : work_(std::make_unique<Work>()) {
   RadiositySolutionSettings settings = withDeviations(askedSettings);
-  if (const glm::dvec3 origin = exactOrigin(asked.bounds); origin != glm::dvec3(0.0))
+  if (const glm::dvec3 origin = floatingOrigin(asked.bounds); origin != glm::dvec3(0.0))
     work_->moved = movedTo(asked, origin);
   const Scene& scene = work_->moved ? *work_->moved : asked;
   work_->mesh = makePatches(scene, patchesOf(scene, settings));
@@ -143,7 +143,7 @@ RadiositySolution solveScene(const gl::Context& context, gl::ProgramLibrary& pro
                              const std::function<bool(const RadiosityStage&)>& onStage) {
   // Far from the origin, floats cannot represent the patches: solve near the origin, and return the scene's own
   // coordinates.
-  if (const glm::dvec3 origin = exactOrigin(scene.bounds); origin != glm::dvec3(0.0)) {
+  if (const glm::dvec3 origin = floatingOrigin(scene.bounds); origin != glm::dvec3(0.0)) {
     RadiositySolution solution = solveScene(context, programs, movedTo(scene, origin), asked, checkpoint, onStage);
     for (glm::dvec3& point : solution.mesh.points) point += origin;
     for (Patch& patch : solution.mesh.patches) patch.centroid += origin;
@@ -211,7 +211,7 @@ RadiosityOrigins originsOf(const gl::Context& context, gl::ProgramLibrary& progr
                            const RadiositySolution& solution, const RadiositySolutionSettings& settings,
                            std::uint32_t patch, const glm::dvec3& corners, bool flat) {
   RadiosityMesh mesh = solution.mesh;
-  if (const glm::dvec3 origin = exactOrigin(scene.bounds); origin != glm::dvec3(0.0)) {
+  if (const glm::dvec3 origin = floatingOrigin(scene.bounds); origin != glm::dvec3(0.0)) {
     for (glm::dvec3& point : mesh.points) point -= origin;
     for (Patch& p : mesh.patches) p.centroid -= origin;
   }

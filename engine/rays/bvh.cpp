@@ -90,7 +90,7 @@ Triangles collect(const Scene& scene) {
     bounds.add(boxOf(triangle));
     result.kept.push_back(triangle);
   }
-  result.origin = exactOrigin({glm::dvec3(bounds.min), glm::dvec3(bounds.max)});
+  result.origin = floatingOrigin({glm::dvec3(bounds.min), glm::dvec3(bounds.max)});
   for (BvhTriangle& triangle : result.kept)
     for (glm::vec3* corner : {&triangle.a, &triangle.b, &triangle.c}) {
       *corner = glm::vec3(glm::dvec3(*corner) - result.origin);

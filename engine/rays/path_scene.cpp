@@ -30,9 +30,9 @@ std::uint32_t kindOf(const Material& material) {
 
 }  // namespace
 
-PathScene::PathScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabilities& capabilities,
+PathScene::PathScene(const Scene& scene, const SceneFeatures& features, const gl::Capabilities& capabilities,
                      const Settings& settings, const std::vector<int>& rankOfMaterial)
-    : needs_(needs), rays_(scene, capabilities, settings.rays) {
+    : features_(features), rays_(scene, capabilities, settings.rays) {
   std::vector<shared::PathMaterial> materials(scene.materials.size());
   for (std::size_t i = 0; i < materials.size(); ++i) {
     const Material& from = scene.materials[i];
@@ -56,7 +56,7 @@ PathScene::PathScene(const Scene& scene, const SceneNeeds& needs, const gl::Capa
         to.metalTexture.layer = PATH_NO_TEXTURE;
   }
   const bool textured =
-      needs_.diffuseTextures || needs_.alphaMasks || needs_.emissionTextures || needs_.normalMaps || needs_.metalMaps;
+      features_.diffuseTextures || features_.alphaMasks || features_.emissionTextures || features_.normalMaps || features_.metalMaps;
   if (textured) uploadTextures(scene, capabilities, materials);
 
   std::vector<float> pickDensity;
@@ -69,15 +69,15 @@ PathScene::PathScene(const Scene& scene, const SceneNeeds& needs, const gl::Capa
   }
   hash_.bytes(materials.data(), materials.size() * sizeof(shared::PathMaterial));
   materials_ = storageOf("path materials", materials, capabilities);
-  triangleWords_ = 4 + (textured ? 1 : 0) + (needs_.smoothNormals ? 3 : 0);
+  triangleWords_ = 4 + (textured ? 1 : 0) + (features_.smoothNormals ? 3 : 0);
   uploadTriangles(scene, capabilities, textured, pickDensity);
-  if (needs_.environment) uploadEnvironment(*scene.environment);
+  if (features_.environment) uploadEnvironment(*scene.environment);
 }
 
 void PathScene::uploadEnvironment(const Environment& environment) {
   constants_.environment = environment.radiance;
   constants_.environmentTurn = glm::vec4(std::cos(environment.rotation), std::sin(environment.rotation), 0.0, 0.0);
-  if (!needs_.environmentPicture) return;
+  if (!features_.environmentPicture) return;
   const Image& picture = *environment.picture;
   const glm::ivec2 size(picture.width, picture.height);
   std::vector<glm::vec4> texels;
@@ -171,16 +171,16 @@ void PathScene::uploadTextures(const Scene& scene, const gl::Capabilities& capab
   AtlasContent colours, values;
   for (std::size_t i = 0; i < materials.size(); ++i) {
     const Material& material = scene.materials[i];
-    if (needs_.diffuseTextures && material.diffuseTexture >= 0)
+    if (features_.diffuseTextures && material.diffuseTexture >= 0)
       colours.add(material.diffuseTexture, false, materials[i].diffuseTexture);
-    if (needs_.alphaMasks && material.alphaMasked)
+    if (features_.alphaMasks && material.alphaMasked)
       colours.add(material.alphaTexture >= 0 ? material.alphaTexture : material.diffuseTexture, true,
                   materials[i].maskTexture);
-    if (needs_.emissionTextures && material.emissionTexture >= 0)
+    if (features_.emissionTextures && material.emissionTexture >= 0)
       colours.add(material.emissionTexture, false, materials[i].emissionTexture);
-    if (needs_.normalMaps && material.normalTexture >= 0)
+    if (features_.normalMaps && material.normalTexture >= 0)
       values.add(material.normalTexture, false, materials[i].normalTexture);
-    if (needs_.metalMaps && material.metalMap && material.metalMap->texture >= 0)
+    if (features_.metalMaps && material.metalMap && material.metalMap->texture >= 0)
       values.add(material.metalMap->texture, false, materials[i].metalTexture);
   }
   atlas_ = makeAtlas(scene, capabilities, "texture atlas", gl::Format::srgb8Alpha8, colours);
@@ -215,7 +215,7 @@ void PathScene::uploadTriangles(const Scene& scene, const gl::Capabilities& capa
     add(pickDensity.empty() ? 0.0f : pickDensity[t]);
     if (textured)
       for (int k = 0; k < 2; ++k) add(corners[k]->texCoord.x), add(corners[k]->texCoord.y);
-    if (needs_.smoothNormals)
+    if (features_.smoothNormals)
       for (const Vertex* corner : corners) add3(corner->normal), words.push_back(0);
   }
   hash_.bytes(words.data(), words.size() * sizeof(std::uint32_t));
@@ -236,18 +236,18 @@ void PathScene::bind() const {
 }
 
 gl::ShaderFlags PathScene::flags() const {
-  return {{"TEXTURES", needs_.diffuseTextures || needs_.emissionTextures || needs_.normalMaps || needs_.metalMaps},
-          {"NORMAL_MAPS", needs_.normalMaps},
-          {"METAL_MAPS", needs_.metalMaps},
-          {"ALPHA_MASKS", needs_.alphaMasks},
-          {"SMOOTH_NORMALS", needs_.smoothNormals},
+  return {{"TEXTURES", features_.diffuseTextures || features_.emissionTextures || features_.normalMaps || features_.metalMaps},
+          {"NORMAL_MAPS", features_.normalMaps},
+          {"METAL_MAPS", features_.metalMaps},
+          {"ALPHA_MASKS", features_.alphaMasks},
+          {"SMOOTH_NORMALS", features_.smoothNormals},
           {"TRIANGLE_WORDS", triangleWords_},
-          {"EMISSION", needs_.emission},
-          {"SUN", hasLights() && needs_.directionalLight},
-          {"SPOTS", hasLights() && needs_.spotLights},
-          {"POINTS", hasLights() && needs_.pointLights},
-          {"ENVIRONMENT", needs_.environment},
-          {"ENVIRONMENT_PICTURE", needs_.environmentPicture},
+          {"EMISSION", features_.emission},
+          {"SUN", hasLights() && features_.directionalLight},
+          {"SPOTS", hasLights() && features_.spotLights},
+          {"POINTS", hasLights() && features_.pointLights},
+          {"ENVIRONMENT", features_.environment},
+          {"ENVIRONMENT_PICTURE", features_.environmentPicture},
           {"NEXT_EVENT", hasLights()}};
 }
 

@@ -12,7 +12,7 @@
 #include "gl/objects.hpp"
 #include "gl/program.hpp"
 #include "rays/ray_scene.hpp"
-#include "scene/needs.hpp"
+#include "scene/features.hpp"
 #include "scene/scene.hpp"
 #include "shared/path_tracer.h"
 
@@ -46,7 +46,7 @@ class PathScene {
   };
   /// `needs`: the scene's needs minus those the programs leave out. rankOfMaterial: for closed boundaries (media.hpp);
   /// may be empty. Throws Error(missingCapability) if the scene exceeds the driver's limits.
-  PathScene(const Scene& scene, const SceneNeeds& needs, const gl::Capabilities& capabilities, const Settings& settings,
+  PathScene(const Scene& scene, const SceneFeatures& features, const gl::Capabilities& capabilities, const Settings& settings,
             const std::vector<int>& rankOfMaterial = {});
 
   /// Storage blocks 2, 3, 4; texture units 0, 1, 2, 4, 60, 61, 62.
@@ -68,7 +68,7 @@ class PathScene {
                        const std::vector<float>& pickDensity);
   void uploadEnvironment(const Environment& environment);
 
-  SceneNeeds needs_;
+  SceneFeatures features_;
   RayScene rays_;
   int triangleWords_ = 4;
   std::size_t lightCount_ = 0;

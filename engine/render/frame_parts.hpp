@@ -6,7 +6,7 @@
 #include "forward/sun_frustum.hpp"
 #include "gl/context.hpp"
 #include "gl/program.hpp"
-#include "scene/needs.hpp"
+#include "scene/features.hpp"
 #include "settings/render_settings.hpp"
 
 #include <vector>
@@ -18,7 +18,7 @@ struct FrameParts {
   const gl::Context& context;
   gl::ProgramLibrary& programs;
   const RenderSettings& settings;
-  const SceneNeeds& needs;
+  const SceneFeatures& features;
   const Scene& scene;  ///< as loaded
   const glm::dvec3& origin;  ///< of the drawn coordinates, in the scene's coordinates
   const GpuScene& drawn;

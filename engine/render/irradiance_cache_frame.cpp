@@ -12,15 +12,15 @@ IrradianceCache::Light cachedLight(Component component) {
 }
 
 std::optional<LightMaps> lightMaps(const FrameParts& parts) {
-  if (!IrradianceCacheFrame::takesMaps(parts.settings, parts.needs)) return {};
+  if (!IrradianceCacheFrame::takesMaps(parts.settings, parts.features)) return {};
   return std::optional<LightMaps>(std::in_place, parts, LightMaps::Lights{true, true}, false);
 }
 
 }  // namespace
 
-bool IrradianceCacheFrame::isNeeded(const RenderSettings& settings, const SceneNeeds& needs) {
+bool IrradianceCacheFrame::isNeeded(const RenderSettings& settings, const SceneFeatures& features) {
   return settings.technique == Technique::irradianceCache &&
-         IrradianceCache::isNeeded(needs, settings.cache, cachedLight(settings.component));
+         IrradianceCache::isNeeded(features, settings.cache, cachedLight(settings.component));
 }
 
 IrradianceCacheFrame::IrradianceCacheFrame(const FrameParts& parts, const gl::Texture& depth)

@@ -14,10 +14,10 @@ namespace lucerna {
 
 class IrradianceCacheFrame {
  public:
-  static bool isNeeded(const RenderSettings& settings, const SceneNeeds& needs);
+  static bool isNeeded(const RenderSettings& settings, const SceneFeatures& features);
   /// Whether they gather light from the lights' maps.
-  static bool takesMaps(const RenderSettings& settings, const SceneNeeds& needs) {
-    return isNeeded(settings, needs) && settings.cache.transport == CacheTransport::gather &&
+  static bool takesMaps(const RenderSettings& settings, const SceneFeatures& features) {
+    return isNeeded(settings, features) && settings.cache.transport == CacheTransport::gather &&
            settings.component != Component::direct;
   }
   /// `depth`: the frame's, of the picture's size.
@@ -43,7 +43,7 @@ class IrradianceCacheFrame {
   }
   /// `cascades`: of the cells, blended over `blendBand` (engine/lpv).
   Image readFromCells(const CascadeSettings& cascades, float blendBand, int paths) const;
-  double largestTurns() const { return cache_.mostTurns(); }
+  double largestIterations() const { return cache_.mostIterations(); }
   void addStagePictures(std::vector<StagePicture>& pictures) const {
     if (maps_) maps_->addStagePictures(pictures);
     pictures.push_back({StagePicture::Kind::normal, "normals", &visible_.normal()});

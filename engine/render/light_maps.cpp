@@ -13,7 +13,7 @@ LightMaps::LightMaps(const FrameParts& parts, Lights lights, bool albedo) : part
     if (light == Light::point) settings.size = std::max(settings.size / 2, 1);
     maps_.emplace_back(parts.programs, parts.drawn, settings);
   };
-  if (lights.sun && parts.needs.directionalLight) add(Light::sun);
+  if (lights.sun && parts.features.directionalLight) add(Light::sun);
   if (!lights.lamps) return;
   for (std::size_t i = 0; i < parts.spots.size(); ++i) add(Light::spot);
   for (std::size_t i = 0; i < parts.points.size(); ++i) add(Light::point);

@@ -37,8 +37,8 @@ LpvFrame::LpvFrame(const FrameParts& parts)
       maps_(parts, {true, true}, parts.settings.lpv.bounces > 1),
       cameraMap_(cameraMap(parts)),
       volume_(parts.programs, parts.context.capabilities(),
-              volumeSettings(parts.settings, maps_.count(), parts.needs.specular)) {
-  if (parts.settings.lpv.glossy && parts.needs.specular) lobes_.emplace();
+              volumeSettings(parts.settings, maps_.count(), parts.features.specular)) {
+  if (parts.settings.lpv.glossy && parts.features.specular) lobes_.emplace();
 }
 
 // Treats the camera as a lamp without light: the map's texels hold position, normal and area of the visible surfaces.
@@ -87,12 +87,12 @@ void LpvFrame::record(gl::TimeQuery& timer, const FrameView& view) {
   volume_.join();
 }
 
-double LpvFrame::largestTurns(const RenderSettings& settings, bool hasPoints) {
-  constexpr double kTurnsOfTexel = 2.0;
+double LpvFrame::largestIterations(const RenderSettings& settings, bool hasPoints) {
+  constexpr double kIterationsOfTexel = 2.0;
   const double cells = settings.lpv.cascades.cells, side = settings.rsm.size;
   const double faces = hasPoints ? 6.0 / 4.0 : 1.0;  // six of half the side
-  return std::max(kTurnsOfTexel * faces * side * side,
-                  kTurnsOfPropagation * cells * cells * cells * settings.lpv.cascades.cascades);
+  return std::max(kIterationsOfTexel * faces * side * side,
+                  kIterationsOfPropagation * cells * cells * cells * settings.lpv.cascades.cascades);
 }
 
 void LpvFrame::forget() {

@@ -18,9 +18,9 @@ namespace lucerna {
 
 class LpvFrame {
  public:
-  static bool isNeeded(const RenderSettings& settings, const SceneNeeds& needs) {
+  static bool isNeeded(const RenderSettings& settings, const SceneFeatures& features) {
     return settings.technique == Technique::lpv && settings.component != Component::direct &&
-           LightPropagationVolume::isNeeded(needs);
+           LightPropagationVolume::isNeeded(features);
   }
   explicit LpvFrame(const FrameParts& parts);
 
@@ -35,9 +35,9 @@ class LpvFrame {
   }
 
   const LightPropagationVolume& volume() const { return volume_; }
-  /// Estimated turns of the largest submission (gl/pieces.hpp): filling from a map, or a step of propagation.
-  static double largestTurns(const RenderSettings& settings, bool hasPoints);
-  double largestTurns() const { return largestTurns(parts_.settings, !parts_.points.empty()); }
+  /// Estimated iterations of the largest submission (gl/chunks.hpp): filling from a map, or a step of propagation.
+  static double largestIterations(const RenderSettings& settings, bool hasPoints);
+  double largestIterations() const { return largestIterations(parts_.settings, !parts_.points.empty()); }
   bool hasMaps() const { return maps_.count() > 0; }
   bool isGlossy() const { return lobes_.has_value(); }
   void addStagePictures(std::vector<StagePicture>& pictures) const;

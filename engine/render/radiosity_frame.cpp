@@ -54,14 +54,14 @@ void RadiosityFrame::draw(const gl::RasterPass& pass, const GpuScene& drawn, con
     return;
   }
   const glm::ivec2 size = settings_.size;
-  pieces_.emplace(kSecondsOfPiece, size.x * rays_->turnsOfPixel(), static_cast<std::uint32_t>(size.y),
-                  settings_.unmeasuredTurns);
+  chunks_.emplace(kSecondsOfPiece, size.x * rays_->iterationsOfPixel(), static_cast<std::uint32_t>(size.y),
+                  settings_.unmeasuredIterations);
   for (int row = 0; row < size.y;) {
-    const int rows = std::min(static_cast<int>(pieces_->units()), size.y - row);
-    const gl::PieceClock clock;
+    const int rows = std::min(static_cast<int>(chunks_->units()), size.y - row);
+    const gl::ChunkClock clock;
     pass.restrictTo({0, row}, {size.x, rows});
     drawn.draw(programs, view.drawn());
-    pieces_->took(static_cast<std::uint32_t>(rows), clock.seconds());
+    chunks_->took(static_cast<std::uint32_t>(rows), clock.seconds());
     row += rows;
   }
 }

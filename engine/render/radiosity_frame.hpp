@@ -5,7 +5,7 @@
 // display mapping.
 #pragma once
 
-#include "gl/pieces.hpp"
+#include "gl/chunks.hpp"
 #include "radiosity/direct_rays.hpp"
 #include "radiosity/radiosity_view.hpp"
 #include "render/frame_parts.hpp"
@@ -39,20 +39,20 @@ class RadiosityFrame {
   }  ///< null: the engine's tone mapping
 
   void bindForShading() const;
-  /// A few shadow rays per pixel keep a small GPU busy for seconds, so rows of pixels are drawn in pieces, each waited
+  /// A few shadow rays per pixel keep a small GPU busy for seconds, so rows of pixels are drawn in chunks, each waited
   /// for.
   void draw(const gl::RasterPass& pass, const GpuScene& drawn, const SurfacePrograms& programs, const FrameView& view);
 
   const RadiosityView& view() const { return view_; }
   bool hasShadowRays() const { return rays_.has_value(); }
-  double largestTurns() const { return pieces_ ? pieces_->largestTurns() : 0.0; }
+  double largestIterations() const { return chunks_ ? chunks_->largestIterations() : 0.0; }
   std::size_t gpuBytes() const { return view_.gpuBytes() + (rays_ ? rays_->gpuBytes() : 0); }
 
  private:
   const RenderSettings& settings_;
   RadiosityView view_;
   std::optional<DirectRays> rays_;
-  std::optional<gl::PieceSize> pieces_;  ///< rows of pixels per submission, for the last frame's shadow rays
+  std::optional<gl::ChunkSize> chunks_;  ///< rows of pixels per submission, for the last frame's shadow rays
 };
 
 }  // namespace lucerna

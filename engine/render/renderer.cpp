@@ -45,14 +45,14 @@ glm::dmat4 clipFromWorld(const Camera& camera, const Bounds& bounds, glm::ivec2 
 Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
                    const RenderSettings& settings)
     : settings_(settings),
-      needs_(analyse(scene)),
-      origin_(exactOrigin(scene.bounds)),
+      features_(analyse(scene)),
+      origin_(floatingOrigin(scene.bounds)),
       sceneExposure_(scene.exposure),
       exposure_(settings.exposure.value_or(scene.exposure)),
       timer_(context.capabilities().softwareRenderer),
       frameConstants_("frame constants", sizeof(shared::FrameConstants), nullptr, gl::Usage::dynamicDraw),
       noAttributes_("full screen"),
-      surfacePieces_(settings.unmeasuredTurns) {
+      surfaceChunks_(settings.unmeasuredIterations) {
   allocateTargets();
   const Technique technique = settings.technique;
   if (technique == Technique::path) {
@@ -68,38 +68,38 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
         "scatters");
   settings_.rsm.haze = haze.has_value();
   settings_.textures.boundaries = !haze;
-  gpuScene_.emplace(radiosity_ ? radiosity_->scene() : aboutOrigin(scene), needs_, context.capabilities(),
+  gpuScene_.emplace(radiosity_ ? radiosity_->scene() : aboutOrigin(scene), features_, context.capabilities(),
                     settings_.textures);
   if (moved_) moved_->textures.clear();  // they are on the GPU now
   const Scene& drawn = gpuScene_->scene();
   if (scene.sun) sunFrustum_ = fitSunFrustum(drawn, scene.sun->direction);
   spots_ = spotViews(drawn);
   points_ = pointViews(drawn);
-  const bool reflectsLamps = LpvFrame::isNeeded(settings, needs_) || RsmFrame::isNeeded(settings, needs_) ||
-                             IrradianceCacheFrame::takesMaps(settings, needs_);
-  if ((showsDirect() || reflectsLamps) && LocalLights::isNeeded(needs_)) {
+  const bool reflectsLamps = LpvFrame::isNeeded(settings, features_) || RsmFrame::isNeeded(settings, features_) ||
+                             IrradianceCacheFrame::takesMaps(settings, features_);
+  if ((showsDirect() || reflectsLamps) && LocalLights::isNeeded(features_)) {
     keepMostImportant(programs, *gpuScene_, spots_, LocalLights::kMostSpots);
     keepMostImportant(programs, *gpuScene_, points_, LocalLights::kMostPoints);
   }
   if (showsDirect()) makeShadowMaps(programs);
 
-  const FrameParts frame{context, programs,   settings_,   needs_, scene,
+  const FrameParts frame{context, programs,   settings_,   features_, scene,
                          origin_, *gpuScene_, sunFrustum_, spots_, points_};
-  if (RsmFrame::isNeeded(settings, needs_)) rsm_.emplace(frame, depth_);
-  if (LpvFrame::isNeeded(settings, needs_)) lpv_.emplace(frame);
-  if (IrradianceCacheFrame::isNeeded(settings, needs_)) cache_.emplace(frame, depth_);
-  if (EnvironmentView::isNeeded(needs_) && settings.component != Component::indirect)
+  if (RsmFrame::isNeeded(settings, features_)) rsm_.emplace(frame, depth_);
+  if (LpvFrame::isNeeded(settings, features_)) lpv_.emplace(frame);
+  if (IrradianceCacheFrame::isNeeded(settings, features_)) cache_.emplace(frame, depth_);
+  if (EnvironmentView::isNeeded(features_) && settings.component != Component::indirect)
     environmentView_.emplace(programs, scene);
   if (haze) makeShafts(programs, *haze);
   loadPrograms(programs);
 
-  if (needs_.environment && !cache_ && !radiosity_)
+  if (features_.environment && !cache_ && !radiosity_)
     logWarning("technique {}: the environment lights nothing (path, radiosity and irradiance-cache support it)",
                nameOf(technique));
 }
 
 bool Renderer::showsDirect() const {
-  return needs_.anyLight() && settings_.component != Component::indirect && !radiosity_;
+  return features_.anyLight() && settings_.component != Component::indirect && !radiosity_;
 }
 
 const Scene& Renderer::aboutOrigin(const Scene& scene) {
@@ -117,12 +117,12 @@ void Renderer::makeShafts(gl::ProgramLibrary& programs, const Haze& haze) {
   shafts.volume = lpv_.has_value();
   shafts.fullFloat = settings_.fullFloatTarget;
   shafts.lookup = LightPropagationVolume::lookupFlags(settings_.lpv);
-  shafts.unmeasuredTurns = settings_.unmeasuredTurns;
+  shafts.unmeasuredIterations = settings_.unmeasuredIterations;
   shafts_.emplace(programs, haze, shafts);
 }
 
 void Renderer::makeShadowMaps(gl::ProgramLibrary& programs) {
-  const bool showsSunLight = ShadowMap::isNeeded(needs_);
+  const bool showsSunLight = ShadowMap::isNeeded(features_);
   const int cascades = settings_.sunCascades.cascades;
   if (showsSunLight && cascades > 1) {
     sunCascades_.emplace(programs, *gpuScene_, "sun cascades",
@@ -132,7 +132,7 @@ void Renderer::makeShadowMaps(gl::ProgramLibrary& programs) {
   } else if (showsSunLight) {
     shadowMap_.emplace(programs, *gpuScene_, settings_.shadow);
   }
-  if (LocalLights::isNeeded(needs_)) localLights_.emplace(programs, *gpuScene_, settings_.lights, spots_, points_);
+  if (LocalLights::isNeeded(features_)) localLights_.emplace(programs, *gpuScene_, settings_.lights, spots_, points_);
 }
 
 SurfacePrograms Renderer::surfacePrograms(gl::ProgramLibrary& programs, bool asked) const {
@@ -145,8 +145,8 @@ SurfacePrograms Renderer::surfacePrograms(gl::ProgramLibrary& programs, bool ask
                                {"HAZE", shafts_.has_value()},
                                {"SPOTS", localLights_ ? static_cast<int>(spots_.size()) : 0},
                                {"POINTS", localLights_ ? static_cast<int>(points_.size()) : 0},
-                               {"SPECULAR", needs_.specular && showsDirect()},
-                               {"EMISSION", needs_.emission && showsRest},
+                               {"SPECULAR", features_.specular && showsDirect()},
+                               {"EMISSION", features_.emission && showsRest},
                                {"ASKED", asked}});
     gl::ShaderFlags own;  // of the technique: one of the first three below; the others are 0
     forTechniques(*this, [&](const auto& technique) {
@@ -160,7 +160,7 @@ SurfacePrograms Renderer::surfacePrograms(gl::ProgramLibrary& programs, bool ask
   };
   SurfacePrograms result;
   result.opaque = loadSurface("surface opaque", false);
-  if (needs_.alphaMasks) result.masked = loadSurface("surface masked", true);
+  if (features_.alphaMasks) result.masked = loadSurface("surface masked", true);
   return result;
 }
 
@@ -168,7 +168,7 @@ void Renderer::loadPrograms(gl::ProgramLibrary& programs) {
   surfacePrograms_ = surfacePrograms(programs, false);
   depthPrograms_.opaque =
       &programs.loadRaster("depth opaque", "forward/depth.vert", "", {{"ALPHA_MASK", 0}, {"FROM_SUN", 0}});
-  if (needs_.alphaMasks)
+  if (features_.alphaMasks)
     depthPrograms_.masked = &programs.loadRaster("depth masked", "forward/depth.vert", "forward/depth.frag",
                                                  {{"ALPHA_MASK", 1}, {"FROM_SUN", 0}});
   toneMap_ = radiosity_ ? radiosity_->loadMapping(programs) : nullptr;
@@ -323,7 +323,7 @@ void Renderer::shade(const FrameView& view, bool depthIsDrawn) {
       pass.clearColor(0, glm::vec4(showsBackground ? gpuScene_->scene().background : glm::vec3(0.0f), 1.0f));
     if (radiosity_) radiosity_->draw(pass, *gpuScene_, surfacePrograms_, view);
     else
-      surfacePieces_.forEach(settings_.size, turnsOfSurface(), 1,
+      surfaceChunks_.forEach(settings_.size, iterationsOfSurface(), 1,
                              [&](const glm::ivec2& corner, const glm::ivec2& size) {
                                pass.restrictTo(corner, size);
                                gpuScene_->draw(surfacePrograms_, view.drawn());
@@ -333,20 +333,20 @@ void Renderer::shade(const FrameView& view, bool depthIsDrawn) {
 
 // Depth is known, so that a pixel shades one surface: its textures, nine texels of the sun's shadow map, four taps of
 // each lamp's, and a lookup of what a technique adds.
-double Renderer::turnsOfSurface() const {
-  constexpr double kTurnsOfMaterial = 4.0, kTurnsOfSun = 9.0, kTurnsOfLamp = 4.0, kTurnsOfIndirect = 24.0;
+double Renderer::iterationsOfSurface() const {
+  constexpr double kIterationsOfMaterial = 4.0, kIterationsOfSun = 9.0, kIterationsOfLamp = 4.0, kIterationsOfIndirect = 24.0;
   const int suns = sunCascades_ ? settings_.sunCascades.cascades : static_cast<int>(shadowMap_.has_value());
   const double lamps = localLights_ ? static_cast<double>(spots_.size() + points_.size()) : 0.0;
-  constexpr double kTurnsOfCell = 8.0;
-  const double glossy = lpv_ && lpv_->isGlossy() ? LPV_GLOSSY_RAYS * kTurnsOfCell * settings_.lpv.glossySteps : 0.0;
-  return kTurnsOfMaterial + kTurnsOfSun * suns + kTurnsOfLamp * lamps + (lpv_ || cache_ ? kTurnsOfIndirect : 0.0) +
+  constexpr double kIterationsOfCell = 8.0;
+  const double glossy = lpv_ && lpv_->isGlossy() ? LPV_GLOSSY_RAYS * kIterationsOfCell * settings_.lpv.glossySteps : 0.0;
+  return kIterationsOfMaterial + kIterationsOfSun * suns + kIterationsOfLamp * lamps + (lpv_ || cache_ ? kIterationsOfIndirect : 0.0) +
          glossy;
 }
 
-double Renderer::largestTurns() const {
-  double largest = std::max(surfacePieces_.largestTurns(), shafts_ ? shafts_->largestTurns() : 0.0);
+double Renderer::largestIterations() const {
+  double largest = std::max(surfaceChunks_.largestIterations(), shafts_ ? shafts_->largestIterations() : 0.0);
   forTechniques(*this, [&](const auto& technique) {
-    if constexpr (requires { technique.largestTurns(); }) largest = std::max(largest, technique.largestTurns());
+    if constexpr (requires { technique.largestIterations(); }) largest = std::max(largest, technique.largestIterations());
   });
   return largest;
 }
@@ -469,7 +469,7 @@ std::vector<StagePicture> Renderer::stagePictures() const {
 
 std::vector<std::string> Renderer::leftOut() const {
   std::vector<std::string> names;
-  for (const auto& [name, needed] : needs_.named())
+  for (const auto& [name, needed] : features_.named())
     if (!needed) names.push_back(name);
   const bool hasMaps = rsm_ || (lpv_ && lpv_->hasMaps()) || (cache_ && cache_->hasMaps());
   const std::pair<const char*, bool> stages[] = {{"shadow map", showsSun()},

@@ -26,7 +26,7 @@
 #include "render/irradiance_cache_frame.hpp"
 #include "render/rsm_frame.hpp"
 #include "render/stage_picture.hpp"
-#include "scene/needs.hpp"
+#include "scene/features.hpp"
 #include "settings/render_settings.hpp"
 #include "shared/frame.h"
 
@@ -81,7 +81,7 @@ class Renderer {
 
   gl::TimeQuery& timer() { return timer_; }
   std::size_t gpuBytes() const;
-  const SceneNeeds& needs() const { return needs_; }
+  const SceneFeatures& features() const { return features_; }
   const RenderSettings& settings() const { return settings_; }
   std::vector<StagePicture> stagePictures() const;
   const IrradianceCache* irradianceCache() const { return cache_ ? &cache_->cache() : nullptr; }
@@ -94,9 +94,9 @@ class Renderer {
   const RadiosityView* radiosity() const { return radiosity_ ? &radiosity_->view() : nullptr; }
   const RsmGather* gather() const { return rsm_ ? &rsm_->gather() : nullptr; }
   const PathTracer* path() const { return path_ ? &path_->tracer() : nullptr; }
-  /// Estimated turns of the largest submission (gl/pieces.hpp) of any frame so far; of the path tracer, which counts
+  /// Estimated iterations of the largest submission (gl/chunks.hpp) of any frame so far; of the path tracer, which counts
   /// them, PathTracer::submissions().
-  double largestTurns() const;
+  double largestIterations() const;
   /// Waits for all pending results, times and counts; for the end of a run, not for a frame.
   void drain();
   /// Names of the omitted features.
@@ -116,7 +116,7 @@ class Renderer {
   void bindFrameConstants(const shared::FrameConstants& constants);
   void recordShadows(const Camera& camera);
   void shade(const FrameView& view, bool depthIsDrawn);
-  double turnsOfSurface() const;  ///< of a pixel of a raster technique
+  double iterationsOfSurface() const;  ///< of a pixel of a raster technique
   void bindForShading() const;
   /// Shading programs; asked: the variant with which one pixel records its terms.
   SurfacePrograms surfacePrograms(gl::ProgramLibrary& programs, bool asked) const;
@@ -139,7 +139,7 @@ class Renderer {
 
   RenderSettings settings_;
   std::uint64_t frames_ = 0;
-  SceneNeeds needs_;
+  SceneFeatures features_;
   glm::dvec3 origin_;  ///< of the drawn coordinates, in the scene's coordinates
   std::optional<Scene> moved_;  ///< the scene relative to it, if it is not 0
   float sceneExposure_, exposure_;
@@ -169,7 +169,7 @@ class Renderer {
   std::optional<PathFrame> path_;
   std::optional<EnvironmentView> environmentView_;
   std::optional<LightShafts> shafts_;  ///< added to the finished picture
-  gl::PicturePieces surfacePieces_;
+  gl::PictureChunks surfaceChunks_;
 };
 
 }  // namespace lucerna

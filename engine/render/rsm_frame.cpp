@@ -10,7 +10,7 @@ RsmFrame::RsmFrame(const FrameParts& parts, const gl::Texture& depth)
     : parts_(parts),
       maps_(parts, {true, true}, false),
       visible_(parts.programs, parts.drawn, depth),
-      gather_(parts.programs, parts.needs, parts.settings.gather, visible_, parts.settings.unmeasuredTurns) {}
+      gather_(parts.programs, parts.features, parts.settings.gather, visible_, parts.settings.unmeasuredIterations) {}
 
 void RsmFrame::resize(const gl::Texture& depth) {
   visible_.resize(depth);

@@ -12,9 +12,9 @@ namespace lucerna {
 
 class RsmFrame {
  public:
-  static bool isNeeded(const RenderSettings& settings, const SceneNeeds& needs) {
+  static bool isNeeded(const RenderSettings& settings, const SceneFeatures& features) {
     return settings.technique == Technique::rsm && settings.component != Component::direct &&
-           RsmGather::isNeeded(needs);
+           RsmGather::isNeeded(features);
   }
   /// `depth`: the frame's, of the picture's size.
   RsmFrame(const FrameParts& parts, const gl::Texture& depth);
@@ -35,7 +35,7 @@ class RsmFrame {
   void bindForShading() const;
 
   const RsmGather& gather() const { return gather_; }
-  double largestTurns() const { return gather_.largestTurns(); }
+  double largestIterations() const { return gather_.largestIterations(); }
   void addStagePictures(std::vector<StagePicture>& pictures) const {
     maps_.addStagePictures(pictures);
     pictures.push_back({StagePicture::Kind::normal, "normals", &visible_.normal()});

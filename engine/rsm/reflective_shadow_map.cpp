@@ -31,7 +31,7 @@ ReflectiveShadowMap::ReflectiveShadowMap(gl::ProgramLibrary& programs, const Gpu
                                 "rsm/rsm.frag", flags, layers > 1 ? "rsm/rsm.geom" : "");
   };
   programs_.opaque = load(false);
-  if (scene.needs().alphaMasks) programs_.masked = load(true);
+  if (scene.features().alphaMasks) programs_.masked = load(true);
   // Positions and flux in 32 bits: neither world coordinates nor flux in arbitrary units fit into 16. Read texel by
   // texel.
   const glm::ivec3 size(settings.size, settings.size, layers);

@@ -43,7 +43,7 @@ class ReflectiveShadowMap {
     }
   };
   /// Needed by techniques that light the scene indirectly: something must reflect a light.
-  static bool isNeeded(const SceneNeeds& needs) { return needs.anyLight() && needs.indirect; }
+  static bool isNeeded(const SceneFeatures& features) { return features.anyLight() && features.indirect; }
 
   ReflectiveShadowMap(gl::ProgramLibrary& programs, const GpuScene& scene, const Settings& settings);
 

@@ -16,7 +16,7 @@ namespace {
 constexpr GLuint kPatternBinding = 0, kWorkBinding = 1;
 constexpr GLuint kLowUnit = 5, kRefusedUnit = 5, kRefusedImage = 1;
 constexpr int kGroup = 8;  // pixels each way of a work group
-constexpr double kTurnsOfInterpolation = 8.0;  // of a pixel; a gathered sample is one
+constexpr double kIterationsOfInterpolation = 8.0;  // of a pixel; a gathered sample is one
 
 // The Work block of shaders/rsm/work.glsl.
 struct GatherCounts {
@@ -62,11 +62,11 @@ gl::ShaderFlags RsmGather::flags(const Settings& settings, Light light) {
           {"ASKED", 0}};
 }
 
-RsmGather::RsmGather(gl::ProgramLibrary& programs, const SceneNeeds& needs, const Settings& settings,
-                     const VisibleSurfaces& visible, double unmeasuredTurns)
-    : settings_(settings), visible_(&visible), pieces_(unmeasuredTurns) {
+RsmGather::RsmGather(gl::ProgramLibrary& programs, const SceneFeatures& features, const Settings& settings,
+                     const VisibleSurfaces& visible, double unmeasuredIterations)
+    : settings_(settings), visible_(&visible), chunks_(unmeasuredIterations) {
   const std::array<std::pair<bool, const char*>, 3> lights{
-      {{needs.directionalLight, ""}, {needs.spotLights, " spot"}, {needs.pointLights, " lamp"}}};
+      {{features.directionalLight, ""}, {features.spotLights, " spot"}, {features.pointLights, " lamp"}}};
   for (std::size_t i = 0; i < lights.size(); ++i) {
     const auto& [needed, name] = lights[i];
     if (!needed) continue;
@@ -168,7 +168,7 @@ void RsmGather::gatherLow(const Inputs& inputs) {
     bindMap(program, settings_, map, &map != &inputs.maps.front());
     bindVisible(program, inputs);
     lowIrradiance_.bindImage(0, gl::Access::readWrite);
-    pieces_.forEach(lowIrradiance_.size2d(), settings_.samples, kGroup, dispatcher(pass, program));
+    chunks_.forEach(lowIrradiance_.size2d(), settings_.samples, kGroup, dispatcher(pass, program));
   }
 }
 
@@ -180,7 +180,7 @@ void RsmGather::interpolate(const Inputs& inputs) {
   setFit(*interpolate_, inputs);
   irradiance_.bindImage(0, gl::Access::write);
   refused_.bindImage(kRefusedImage, gl::Access::write);
-  pieces_.forEach(irradiance_.size2d(), kTurnsOfInterpolation, kGroup, dispatcher(pass, *interpolate_));
+  chunks_.forEach(irradiance_.size2d(), kIterationsOfInterpolation, kGroup, dispatcher(pass, *interpolate_));
 }
 
 void RsmGather::gatherFull(const Inputs& inputs) {
@@ -196,12 +196,12 @@ void RsmGather::gatherFull(const Inputs& inputs) {
     bindVisible(program, inputs);
     irradiance_.bindImage(0, gl::Access::readWrite);
     if (!settings_.interpolates()) {
-      pieces_.forEach(irradiance_.size2d(), settings_.samples, kGroup, dispatcher(pass, program));
+      chunks_.forEach(irradiance_.size2d(), settings_.samples, kGroup, dispatcher(pass, program));
       continue;
     }
     // How long the list is only the GPU knows: at most every pixel.
     refused_.bind(kRefusedUnit);
-    pieces_.forEach(irradiance_.size2d(), settings_.samples, 1, [&](const glm::ivec2& corner, const glm::ivec2& size) {
+    chunks_.forEach(irradiance_.size2d(), settings_.samples, 1, [&](const glm::ivec2& corner, const glm::ivec2& size) {
       const int first = corner.y * irradiance_.size().x + corner.x;
       program.set("listPart", glm::ivec2(first, first + size.x * size.y));
       pass.dispatchIndirect(work_);

@@ -7,7 +7,7 @@
 #include "forward/asked_pixel.hpp"
 #include "forward/visible_surfaces.hpp"
 #include "gl/pass.hpp"
-#include "gl/picture_pieces.hpp"
+#include "gl/picture_chunks.hpp"
 #include "gl/read_back.hpp"
 #include "rsm/reflective_shadow_map.hpp"
 
@@ -53,12 +53,12 @@ class RsmGather {
     std::uint64_t frames = 0, pixels = 0, gathered = 0, refused = 0;  ///< pixels: those that show a surface
     double saving() const { return pixels ? 1.0 - static_cast<double>(gathered) / static_cast<double>(pixels) : 0.0; }
   };
-  static bool isNeeded(const SceneNeeds& needs) { return ReflectiveShadowMap::isNeeded(needs); }
+  static bool isNeeded(const SceneFeatures& features) { return ReflectiveShadowMap::isNeeded(features); }
 
   /// Gathers at the pixels of `visible`, which must outlive this and be drawn before. Compiles for the kinds of light
-  /// in `needs`. unmeasuredTurns: of a submission where a frame's gather is cut (gl/picture_pieces.hpp).
-  RsmGather(gl::ProgramLibrary& programs, const SceneNeeds& needs, const Settings& settings,
-            const VisibleSurfaces& visible, double unmeasuredTurns = gl::kUnmeasuredTurns);
+  /// in `needs`. unmeasuredIterations: of a submission where a frame's gather is cut (gl/picture_chunks.hpp).
+  RsmGather(gl::ProgramLibrary& programs, const SceneFeatures& features, const Settings& settings,
+            const VisibleSurfaces& visible, double unmeasuredIterations = gl::kUnmeasuredIterations);
   void resize();  ///< to the current size of the visible surfaces
 
   // Call in this order; the first two only if settings().interpolates().
@@ -70,7 +70,7 @@ class RsmGather {
   const gl::Texture& irradiance() const { return irradiance_; }
   void collect(bool wait = false);  ///< fetches counts that have arrived; wait: waits for all
   const Counts& counts() const { return counts_; }
-  double largestTurns() const { return pieces_.largestTurns(); }  ///< estimated, of the largest submission so far
+  double largestIterations() const { return chunks_.largestIterations(); }  ///< estimated, of the largest submission so far
   const Settings& settings() const { return settings_; }
   std::size_t gpuBytes() const;
 
@@ -98,7 +98,7 @@ class RsmGather {
   gl::Texture refused_;  ///< 32 bits: a list of pixels, row by row
   std::unique_ptr<gl::ReadBackRing> ring_;
   Counts counts_;
-  gl::PicturePieces pieces_;
+  gl::PictureChunks chunks_;
 };
 
 constexpr std::array<std::string_view, 2> namesOf(RsmGather::Weight) { return {"unbiased", "published"}; }

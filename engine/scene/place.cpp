@@ -15,7 +15,7 @@ void move(Bounds& bounds, const glm::dvec3& origin) {
 
 }  // namespace
 
-glm::dvec3 exactOrigin(const Bounds& bounds) {
+glm::dvec3 floatingOrigin(const Bounds& bounds) {
   glm::dvec3 origin(0.0);
   if (bounds.empty()) return origin;
   for (int k = 0; k < 3; ++k) {

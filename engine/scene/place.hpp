@@ -8,9 +8,9 @@ namespace lucerna {
 /// The middle of `bounds` along each axis on which they lie between m and 2 m from zero: there the difference of any
 /// coordinate and this origin is exact in float [Sterbenz1974]. 0 along the other axes, whose coordinates are at most
 /// twice the bounds' extent. Representable in float.
-glm::dvec3 exactOrigin(const Bounds& bounds);
+glm::dvec3 floatingOrigin(const Bounds& bounds);
 
-/// `scene` relative to `origin`: surfaces, lamps, media, cameras and bounds. Exact for exactOrigin() of its own bounds.
+/// `scene` relative to `origin`: surfaces, lamps, media, cameras and bounds. Exact for floatingOrigin() of its own bounds.
 Scene movedTo(const Scene& scene, const glm::dvec3& origin);
 
 }  // namespace lucerna

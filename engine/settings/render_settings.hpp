@@ -59,8 +59,8 @@ struct RenderSettings {
   IrradianceCacheSettings cache;
   PathSettings path;
   RadiosityView::Settings radiosity;  ///< `light` is not read: the component determines it
-  double unmeasuredTurns =
-      gl::kUnmeasuredTurns;  ///< of a piece of radiosity's shadow rays of unknown cost (gl/pieces.hpp)
+  double unmeasuredIterations =
+      gl::kUnmeasuredIterations;  ///< of a piece of radiosity's shadow rays of unknown cost (gl/chunks.hpp)
 };
 
 }  // namespace lucerna

@@ -74,7 +74,7 @@ struct Shadow {
 #if NEXT_EVENT
 // Next-event estimation from a surface of reflectance `throughput` * pi over irradiance; scatterings: including this
 // one.
-Shadow askLight(Surface surface, vec3 throughput, uint scatterings, bool lampsAlone, PathNumbers numbers) {
+Shadow queueShadowRay(Surface surface, vec3 throughput, uint scatterings, bool lampsAlone, PathNumbers numbers) {
   Shadow shadow = Shadow(false, vec3(0.0), Ray(vec3(0.0), 0.0, vec3(1.0), 0.0));
   LightSample light;
   if (!sampleLight(surface.position, randomPair(numbers, scatterings, kPurposeLight),
@@ -124,14 +124,14 @@ vec3 followPath(Surface surface, uint triangle, PathNumbers numbers) {
 #endif
 #if NEXT_EVENT
       if (counts(scatterings))
-        shadow = askLight(surface, throughput, scatterings, cached && keepsDirectLight(), numbers);
+        shadow = queueShadowRay(surface, throughput, scatterings, cached && keepsDirectLight(), numbers);
 #endif
       if (!ends) {
         vec3 direction = cosineSample(surface.normal, randomPair(numbers, scatterings, kPurposeScatter));
         pdf = dot(direction, surface.normal) / kPi;
         ray = Ray(offsetRay(surface.position, surface.geometricNormal, surface.magnitude), 0.0, direction, 3e38);
         ends = !(dot(direction, surface.geometricNormal) > 0.0) || scatterings >= cache.mostSegments + 1u ||
-               loopTurns >= tracer.turns;
+               loopIterations >= tracer.iterations;
 #if FROM_CELLS
         if (scatterings == 1u) {
           // Two bands of the radiance L there give the irradiance E = integral of L (1/4 + <n, w> / 2) dw

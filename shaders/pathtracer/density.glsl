@@ -40,7 +40,7 @@ float densityIntegral(DensityRecord g, vec3 origin, vec3 direction, float near, 
   float from = near, sum = 0.0, atFrom = densityInside(g, start);
   int most = g.size.x + g.size.y + g.size.z + 3;
   for (int i = 0; i < most && from < far; ++i) {  // ends: as many as a grid has planes
-    ++loopTurns;
+    ++loopIterations;
     float to = far;
     int axis = -1;
     for (int k = 0; k < 3; ++k) {

@@ -1,5 +1,5 @@
 // For tests: evaluates the path tracer's functions for media and boundaries at given arguments.
-uint loopTurns = 0u;  // loop iterations so far, as in bvh.glsl
+uint loopIterations = 0u;  // loop iterations so far, as in bvh.glsl
 #include "pathtracer/density.glsl"
 #include "pathtracer/boundary.glsl"
 #include "pathtracer/fresnel.glsl"
@@ -70,7 +70,7 @@ void main() {
     DensityRecord g = densityRecords[p.k.x];
     DensityMarch march;
     if (densityMarchStart(g, p.a.xyz, p.b.xyz, p.a.w, march))
-      r.a = vec4(densityIntegral(g, march.origin, march.direction, march.near, march.last), float(loopTurns), 0.0, 0.0);
+      r.a = vec4(densityIntegral(g, march.origin, march.direction, march.near, march.last), float(loopIterations), 0.0, 0.0);
   } else if (what == 8) {
     // k.x: entries, lowest rank first, 8 bits each; k.y: their number; k.z: exits, likewise; k.w: their number.
     uvec4 inside = uvec4(0u);

@@ -65,7 +65,7 @@ void addNextEvent(Path path, Surface surface, uint triangle, Facet facet, float 
   if (path.ior != 1.0) return;  // a straight line across a refracting boundary does not reach a lamp
 #endif
   if (all(equal(contribution, vec3(0.0)))) return;
-  askLight(path, contribution, beside(surface, side > 0.0 ? surface.geometricNormal : -surface.geometricNormal), light,
+  queueShadowRay(path, contribution, beside(surface, side > 0.0 ? surface.geometricNormal : -surface.geometricNormal), light,
            triangle, numbers);
 }
 #endif
@@ -343,7 +343,7 @@ void main() {
   Hit crossed;          // the boundary that a shadow ray is crossing
   bool right = true;    // whether the path could validly cross the boundary
 #endif
-  // ends: each ray of a path adds 4 turns, up to tracer.turns; between two of them lie at most 256 boundaries that a
+  // ends: each ray of a path adds 4 turns, up to tracer.iterations; between two of them lie at most 256 boundaries that a
   // shadow ray crosses, with kMostBesides short rays each
   for (;;) {
 #if PARKED
@@ -356,8 +356,8 @@ void main() {
     Ray ray = Ray(vec3(0.0), 0.0, vec3(1.0), 0.0);
     uint skip = kNoHit;
     if (job == kPathRay) {
-      if (loopTurns >= tracer.turns) break;
-      loopTurns += 4u;
+      if (loopIterations >= tracer.iterations) break;
+      loopIterations += 4u;
       take(path);
       ray = Ray(path.origin, 0.0, path.direction, 3e38);
       skip = path.skip;
@@ -599,8 +599,8 @@ void main() {
   }
 
   // Store the counters, the film, and the path in flight.
-  atomicMax(longest, loopTurns);
-  atomicAdd(allTurns, loopTurns);
+  atomicMax(longest, loopIterations);
+  atomicAdd(allIterations, loopIterations);
 #if MEDIA
   atomicAdd(collisions, collisionCount);
 #endif

@@ -11,7 +11,7 @@ layout(std430, binding = 5) restrict buffer StateBlock {
   uint wrongCrossings;  // boundaries left without having been entered: open or flipped meshes
   uint longest;         // most loop iterations of any lane
   // loop iterations of all lanes; below 2^32, since a submission has at most 2^28 plus the last segments
-  uint allTurns;
+  uint allIterations;
   uint collisions;      // in media, over all lanes
   uvec4 state[];        // STATE_WORDS a lane: for each group of 64 lanes, word by word
 };
@@ -101,7 +101,7 @@ uint wordAt(uint word) { return home + 64u * word; }
 
 // 0, which compilers cannot know. Added to what stays the same, lest they compute all addresses and hashes before the
 // loop and keep them in some thirty registers.
-uint hiddenZero() { return PARKED ? loopTurns >> 31u : 0u; }
+uint hiddenZero() { return PARKED ? loopIterations >> 31u : 0u; }
 void forgetAddresses() { home += hiddenZero(); }
 
 // Whether a path waits there for its next ray.

@@ -65,7 +65,7 @@ void parkShadow() {}
 #endif
 
 // start: origin of the ray, on the triangle `skip`.
-void askLight(Path path, vec3 contribution, vec3 start, LightSample light, uint skip, PathNumbers numbers) {
+void queueShadowRay(Path path, vec3 contribution, vec3 start, LightSample light, uint skip, PathNumbers numbers) {
   shadow.waits = true;
   shadow.infinite = light.infinite;
   shadow.skip = skip;

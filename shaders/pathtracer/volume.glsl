@@ -112,12 +112,12 @@ vec3 mediumTransmittance(MediumRecord medium, vec3 origin, vec3 direction, float
     bool goesOn = densityMarchStart(gridOf(medium), origin, direction, distance, march);
     int left = densityMostBlocks(gridOf(medium));
     for (; left > 0 && goesOn && densityMarchNext(gridOf(medium), march, bound); --left) {  // ends: as many as blocks
-      ++loopTurns;
+      ++loopIterations;
       float rate = medium.majorant * bound;
       if (!(rate > 0.0)) continue;
       t = march.near;
       for (uint step = 0u; step <= kMostTries; ++step) {
-        ++loopTurns;
+        ++loopIterations;
         goesOn = ++tries <= kMostTries;
         if (!goesOn) break;
         words = pcg4d(words);
@@ -278,7 +278,7 @@ void addPointLight(inout Path path, MediumRecord medium, vec3 q, float s, PathNu
   vec3 contribution = medium.albedo * medium.extinction * passageWeight(medium, q, x) *
                       phaseValue(medium, path.direction, light.direction) * light.value / density;
   if (any(greaterThan(contribution, vec3(0.0))))
-    askLight(path, contribution, place, light, kNoHit, numbers);
+    queueShadowRay(path, contribution, place, light, kNoHit, numbers);
 }
 #endif
 
@@ -348,7 +348,7 @@ int scatterInMedium(inout Path path, MediumRecord medium, PathNumbers numbers, b
     if (light.pdf > 0.0) contribution *= powerHeuristic(light.pdf, dot(channelProbabilities(path.throughput), phase));
 #endif
     if (any(greaterThan(contribution, vec3(0.0))))
-      askLight(path, contribution, path.origin, light, kNoHit, numbers);
+      queueShadowRay(path, contribution, path.origin, light, kNoHit, numbers);
   }
 #endif
 #if !SCATTERED_LIGHT && !NEXT_EVENT
@@ -382,12 +382,12 @@ int trackDensity(inout Path path, MediumRecord medium, float distance, PathNumbe
   bool goesOn = densityMarchStart(gridOf(medium), path.origin, path.direction, distance, march);
   int left = densityMostBlocks(gridOf(medium));
   for (; left > 0 && goesOn && densityMarchNext(gridOf(medium), march, bound); --left) {  // ends: as many as blocks
-    ++loopTurns;
+    ++loopIterations;
     float rate = medium.majorant * bound;
     if (!(rate > 0.0)) continue;
     t = march.near;
     for (uint step = 0u; step < kMostTracked; ++step) {
-      ++loopTurns;
+      ++loopIterations;
       words = pcg4d(words);
       t += exponentialSample(words.x) / rate;
       if (t >= march.far) break;
@@ -508,7 +508,7 @@ bool walk(inout Path path, MediumRecord medium, inout float flight, PathNumbers 
         texelFetch(clearances, interior.clearance + cell.x + interior.size.x * (cell.y + interior.size.y * cell.z)).x;
     if (!(flight + margin < radius - length(path.origin - interior.min - (vec3(cell) + 0.5) * interior.cell)))
       return true;
-    ++loopTurns;
+    ++loopIterations;
     numbers.pixel += hiddenZero();
     numbers.sampleIndex += hiddenZero();
     weighFlight(path, medium, channelProbabilities(path.throughput), path.head + flight, false, numbers);

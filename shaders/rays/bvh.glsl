@@ -143,7 +143,7 @@ int bvhStackPlace(int entry) { return entry; }
 
 // Loop iterations of this invocation so far, for kernels that must stop before a driver leaves all loops (llvmpipe does
 // after 65,535 iterations of a vector of lanes).
-uint loopTurns = 0u;
+uint loopIterations = 0u;
 
 // A traversal visits no node twice, so this bounds its turns whatever the nodes hold.
 int bvhNodeCount() { return textureSize(bvhNodes) / BVH_NODE_TEXELS; }
@@ -165,7 +165,7 @@ bool isDone(BvhTraversal s) { return s.top < 0; }
 
 // Visits one node and tests the triangles of its leaves. any: stop at the first hit.
 void advanceRay(inout BvhTraversal s, bool any) {
-  ++loopTurns;
+  ++loopIterations;
   int place = bvhHighest(s.siblings.y >> 24);
   s.siblings.y &= ~(0x01000000u << place);
   int node = BVH_NODE_TEXELS *
@@ -199,7 +199,7 @@ void advanceRay(inout BvhTraversal s, bool any) {
     int k = bvhHighest(leaves);
     leaves &= ~(1u << k);
     ++s.tested;
-    ++loopTurns;
+    ++loopIterations;
     int triangle = 1 + BVH_TRIANGLE_TEXELS * (int(n1.y) + k);
     uvec4 a = texelFetch(bvhTriangles, triangle);
     vec3 b = uintBitsToFloat(texelFetch(bvhTriangles, triangle + 1).xyz),

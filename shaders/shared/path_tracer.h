@@ -36,7 +36,7 @@ struct PathConstants {
   vec3 pixelRight;          // one pixel to the right, at distance 1 along the view
   uint sampleTarget;        // samples that every pixel of the tile should have
   vec3 pixelUp;             // one pixel up
-  uint turns;               // loop iterations after which a lane starts no further segment in this submission
+  uint iterations;             // loop iterations after which a lane starts no further segment in this submission
   vec3 firstPixel;          // from the camera to the lower left corner of the picture at distance 1
   uint minScatterings;      // light with fewer scatterings on its way to the camera is not counted
   vec3 background;

@@ -4,7 +4,7 @@
 // surface [Chandrasekhar1960, Beer-Lambert law]. In: radiance and depth of a frame. Out: radiance.
 #include "gl/pass.hpp"
 #include "gl/time_query.hpp"
-#include "scene/needs.hpp"
+#include "scene/features.hpp"
 #include "support/gl_fixture.hpp"
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -29,7 +29,7 @@ class Absorption {
   };
 
   /// What is not needed is not built: the frame keeps a std::optional<Absorption>.
-  static bool isNeeded(const SceneNeeds&, const Settings& settings) { return settings.coefficient != glm::vec3(0.0f); }
+  static bool isNeeded(const SceneFeatures&, const Settings& settings) { return settings.coefficient != glm::vec3(0.0f); }
 
   /// Compiles and allocates. Throws Error(missingCapability) where `size` is above the driver's limits.
   Absorption(gl::ProgramLibrary& programs, glm::ivec2 size, const Settings& settings)
@@ -98,8 +98,8 @@ TEST_F(ExampleTechnique, DimsByTheDistanceToTheSurface) {
 }
 
 TEST_F(ExampleTechnique, IsNotNeededWithoutAMedium) {
-  EXPECT_FALSE(Absorption::isNeeded(SceneNeeds{}, {}));
-  EXPECT_TRUE(Absorption::isNeeded(SceneNeeds{}, {glm::vec3(0.1f)}));
+  EXPECT_FALSE(Absorption::isNeeded(SceneFeatures{}, {}));
+  EXPECT_TRUE(Absorption::isNeeded(SceneFeatures{}, {glm::vec3(0.1f)}));
 }
 
 }  // namespace

@@ -65,7 +65,7 @@ TEST_F(PathTracerTest, NoSubmissionTakesMoreTurnsThanIsSafeHoweverEmptyThePictur
               static_cast<double>(submissions.largest), static_cast<double>(submissions.begun));
   EXPECT_GE(submissions.begun, lanes * 200);  // the box took its share
   EXPECT_LE(submissions.begun, lanes * 512);
-  EXPECT_LE(static_cast<double>(submissions.largest), gl::kMostOverUnmeasured * gl::kUnmeasuredTurns);
+  EXPECT_LE(static_cast<double>(submissions.largest), gl::kMostOverUnmeasured * gl::kUnmeasuredIterations);
   EXPECT_GT(submissions.largest, submissions.begun);
 }
 

@@ -85,11 +85,11 @@ TEST_F(PathWalkTest, WalksAreThePathsThatTraceEveryFlight) {
   PathTracer::Settings settings;
   settings.size = {24, 24};
   PathTracer walking(context(), library(), scene, settings);
-  EXPECT_TRUE(walking.needs().denseMedia);
+  EXPECT_TRUE(walking.features().denseMedia);
   walking.record(8);
   settings.walks = false;
   PathTracer tracing(context(), library(), scene, settings);
-  EXPECT_FALSE(tracing.needs().denseMedia);
+  EXPECT_FALSE(tracing.features().denseMedia);
   tracing.record(8);
   EXPECT_EQ(walking.mean().pixels, tracing.mean().pixels);
   EXPECT_EQ(walking.statistics().leakedPaths, 0.0);

@@ -20,7 +20,7 @@ using test::SceneBuilder;
 class RadiosityDirect : public test::SharedProgramsTest {
  protected:
   static Image picture(const Scene& scene, const Camera& camera, Component component, RadiosityView::Direct direct,
-                       int size = 48, double unmeasuredTurns = gl::kUnmeasuredTurns, double* largestTurns = nullptr) {
+                       int size = 48, double unmeasuredIterations = gl::kUnmeasuredIterations, double* largestIterations = nullptr) {
     RenderSettings settings;
     settings.technique = Technique::radiosity;
     settings.component = component;
@@ -30,10 +30,10 @@ class RadiosityDirect : public test::SharedProgramsTest {
     settings.radiosity.shadowRays = 64;
     settings.radiosity.solution.hemicubes.resolution = 32;
     settings.radiosity.solution.patches.longestEdge = 0.8;
-    settings.unmeasuredTurns = unmeasuredTurns;
+    settings.unmeasuredIterations = unmeasuredIterations;
     Renderer renderer(context(), library(), scene, settings);
     renderer.render(camera);
-    if (largestTurns) *largestTurns = renderer.largestTurns();
+    if (largestIterations) *largestIterations = renderer.largestIterations();
     return renderer.readRadiance();
   }
   static glm::dvec3 rayOf(const Camera& camera, int x, int y, int size) {
@@ -112,8 +112,8 @@ TEST_F(RadiosityDirect, ThePictureDoesNotDependOnHowRowsAreCut) {
   const Scene scene = tableScene();
   double all = 0.0, cut = 0.0;
   const Image whole =
-      picture(scene, kAbove, Component::all, RadiosityView::Direct::pixels, 48, gl::kUnmeasuredTurns, &all);
-  EXPECT_EQ(all, 48 * 48 * 64 * gl::kTurnsOfRay);  // one piece
+      picture(scene, kAbove, Component::all, RadiosityView::Direct::pixels, 48, gl::kUnmeasuredIterations, &all);
+  EXPECT_EQ(all, 48 * 48 * 64 * gl::kIterationsOfRay);  // one piece
   EXPECT_EQ(picture(scene, kAbove, Component::all, RadiosityView::Direct::pixels, 48, 1e6, &cut).pixels, whole.pixels);
   EXPECT_LE(cut, gl::kMostOverUnmeasured * 1e6);
   EXPECT_GT(cut, 0.0);

@@ -229,8 +229,8 @@ TEST_F(Hemicube, RowsDoNotDependOnHowTheyAreCutIntoSubmissions) {
       return values;
     };
     double whole = 0.0, cut = 0.0;
-    const std::vector<float> expected = rowsBy(gl::kUnmeasuredTurns, false, whole);
-    const double hemicube = 3.0 * 32 * 32 * gl::kTurnsOfRay;
+    const std::vector<float> expected = rowsBy(gl::kUnmeasuredIterations, false, whole);
+    const double hemicube = 3.0 * 32 * 32 * gl::kIterationsOfRay;
     EXPECT_GT(whole, 20 * hemicube) << nameOf(visibility);
     for (const bool streamed : {false, true}) {
       EXPECT_EQ(rowsBy(2.5 * hemicube, streamed, cut), expected) << nameOf(visibility);

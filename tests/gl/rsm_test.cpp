@@ -32,8 +32,8 @@ class ReflectiveShadowMapGl : public test::SharedProgramsTest {
     std::size_t covered = 0;
   };
   static Drawn draw(const Scene& scene, int size, const GpuSceneSettings& textures = {}) {
-    const SceneNeeds needs = analyse(scene);
-    const GpuScene gpuScene(scene, needs, capabilities(), textures);
+    const SceneFeatures features = analyse(scene);
+    const GpuScene gpuScene(scene, features, capabilities(), textures);
     ReflectiveShadowMap rsm(library(), gpuScene, {size});
     EXPECT_EQ(rsm.size(), size);
     const SunFrustum frustum = fitSunFrustum(scene, scene.sun->direction);

@@ -1,7 +1,7 @@
-// The longest submission of each raster technique: work items times turns, as gl/pieces.hpp counts them, not timed.
+// The longest submission of each raster technique: work items times iterations, as gl/chunks.hpp counts them, not timed.
 // What is cut stays the same bit by bit. Those of path tracing, of radiosity's shadow rays and of hemicubes are in
 // PathTracerTest, RadiosityDirect and Hemicube.
-#include "gl/pieces.hpp"
+#include "gl/chunks.hpp"
 #include "irradiance_cache/light_gather.hpp"
 #include "render/renderer.hpp"
 #include "shared/irradiance_cache.h"
@@ -16,36 +16,36 @@
 namespace lucerna {
 namespace {
 
-constexpr double kMost = gl::kMostOverUnmeasured * gl::kUnmeasuredTurns;
+constexpr double kMost = gl::kMostOverUnmeasured * gl::kUnmeasuredIterations;
 
 class Submissions : public test::SharedProgramsTest {
  protected:
   struct Drawn {
     Image picture;
-    double largestTurns, largestSubmission;
+    double largestIterations, largestSubmission;
   };
-  static Drawn drawn(const Scene& scene, RenderSettings settings, double unmeasuredTurns) {
+  static Drawn drawn(const Scene& scene, RenderSettings settings, double unmeasuredIterations) {
     settings.size = {64, 48};
     settings.fullFloatTarget = true;
     settings.rsm.size = 64;
     settings.lpv.cascades.cells = 8;
-    settings.unmeasuredTurns = unmeasuredTurns;
+    settings.unmeasuredIterations = unmeasuredIterations;
     Renderer renderer(context(), library(), scene, settings);
     gl::Submission::forget();
     renderer.render(test::openBoxCamera());
-    return {renderer.readRadiance(), renderer.largestTurns(), gl::Submission::largest()};
+    return {renderer.readRadiance(), renderer.largestIterations(), gl::Submission::largest()};
   }
-  /// unmeasuredTurns: such that the picture takes many pieces of at least a work group.
-  static void expectSameInPieces(const Scene& scene, const RenderSettings& settings, double unmeasuredTurns) {
-    const Drawn whole = drawn(scene, settings, gl::kUnmeasuredTurns), cut = drawn(scene, settings, unmeasuredTurns);
-    EXPECT_LE(whole.largestTurns, kMost);
-    EXPECT_GT(whole.largestTurns, gl::kMostOverUnmeasured * unmeasuredTurns) << "nothing was cut";
-    EXPECT_LE(cut.largestTurns, gl::kMostOverUnmeasured * unmeasuredTurns);
-    EXPECT_GT(cut.largestTurns, 0.0);
+  /// unmeasuredIterations: such that the picture takes many chunks of at least a work group.
+  static void expectSameInChunks(const Scene& scene, const RenderSettings& settings, double unmeasuredIterations) {
+    const Drawn whole = drawn(scene, settings, gl::kUnmeasuredIterations), cut = drawn(scene, settings, unmeasuredIterations);
+    EXPECT_LE(whole.largestIterations, kMost);
+    EXPECT_GT(whole.largestIterations, gl::kMostOverUnmeasured * unmeasuredIterations) << "nothing was cut";
+    EXPECT_LE(cut.largestIterations, gl::kMostOverUnmeasured * unmeasuredIterations);
+    EXPECT_GT(cut.largestIterations, 0.0);
     EXPECT_LE(whole.largestSubmission, kMost);
     EXPECT_LE(cut.largestSubmission,
-              settings.technique == Technique::lpv ? kMost : gl::kMostOverUnmeasured * unmeasuredTurns);
-    EXPECT_GE(cut.largestSubmission, cut.largestTurns);
+              settings.technique == Technique::lpv ? kMost : gl::kMostOverUnmeasured * unmeasuredIterations);
+    EXPECT_GE(cut.largestSubmission, cut.largestIterations);
     EXPECT_EQ(cut.picture.pixels, whole.picture.pixels);
     EXPECT_GT(meanOf(whole.picture).x, 0.0);
   }
@@ -54,33 +54,33 @@ class Submissions : public test::SharedProgramsTest {
 TEST_F(Submissions, NoPieceOfAPictureIsMoreThanIsSafe) {
   struct Case {
     glm::ivec2 picture;
-    double turnsOfPixel;
+    double iterationsOfPixel;
     int unit;
     bool isCut;
   };
-  for (const Case& c : {Case{{1280, 720}, 400.0, 8, true},  // the default gather of 3.7e8 turns
+  for (const Case& c : {Case{{1280, 720}, 400.0, 8, true},  // the default gather of 3.7e8 iterations
                         {{640, 360}, 400.0, 8, false},
                         {{1920, 1080}, 12.0, 1, false},  // surfaces in the sun
                         {{7680, 4320}, 100.0, 1, true},
                         {{3840, 2160}, 65536.0, 8, true},  // a row of work groups is too much
                         {{16384, 16384}, 65536.0, 1, true}}) {
-    const glm::ivec2 piece = gl::PicturePieces().sizeOfPiece(c.picture, c.turnsOfPixel, c.unit);
-    EXPECT_EQ(piece != c.picture, c.isCut) << c.picture.x;
-    EXPECT_LE(c.turnsOfPixel * piece.x * piece.y, c.isCut ? gl::kUnmeasuredTurns : kMost) << c.picture.x;
-    for (int axis = 0; axis < 2; ++axis) EXPECT_TRUE(piece[axis] == c.picture[axis] || piece[axis] % c.unit == 0);
+    const glm::ivec2 chunk = gl::PictureChunks().sizeOfPiece(c.picture, c.iterationsOfPixel, c.unit);
+    EXPECT_EQ(chunk != c.picture, c.isCut) << c.picture.x;
+    EXPECT_LE(c.iterationsOfPixel * chunk.x * chunk.y, c.isCut ? gl::kUnmeasuredIterations : kMost) << c.picture.x;
+    for (int axis = 0; axis < 2; ++axis) EXPECT_TRUE(chunk[axis] == c.picture[axis] || chunk[axis] % c.unit == 0);
   }
 }
 
 TEST_F(Submissions, PiecesMakeUpThePicture) {
-  for (const double turnsOfPixel : {0.1, 4.0, 50.0}) {
+  for (const double iterationsOfPixel : {0.1, 4.0, 50.0}) {
     const glm::ivec2 picture(37, 21);
     std::vector<int> times(37 * 21, 0);
-    gl::PicturePieces pieces(256.0);
-    pieces.forEach(picture, turnsOfPixel, 2, [&](const glm::ivec2& corner, const glm::ivec2& size) {
+    gl::PictureChunks chunks(256.0);
+    chunks.forEach(picture, iterationsOfPixel, 2, [&](const glm::ivec2& corner, const glm::ivec2& size) {
       for (int y = corner.y; y < corner.y + size.y; ++y)
         for (int x = corner.x; x < corner.x + size.x; ++x) ++times.at(static_cast<std::size_t>(37 * y + x));
     });
-    EXPECT_EQ(times, std::vector<int>(37 * 21, 1)) << turnsOfPixel;
+    EXPECT_EQ(times, std::vector<int>(37 * 21, 1)) << iterationsOfPixel;
   }
 }
 
@@ -89,7 +89,7 @@ TEST_F(Submissions, DirectLight) {
   scene.points.push_back({{0.3, 1.5, 0.2}, glm::vec3(2.0f)});
   RenderSettings settings;
   settings.technique = Technique::direct;
-  expectSameInPieces(scene, settings, 1024.0);
+  expectSameInChunks(scene, settings, 1024.0);
 }
 
 TEST_F(Submissions, GatherFromTheMap) {
@@ -101,7 +101,7 @@ TEST_F(Submissions, GatherFromTheMap) {
   settings.gather.lowResolution = 2;  // so that each of its passes is cut
   for (const bool interpolate : {false, true}) {
     settings.gather.interpolate = interpolate;
-    expectSameInPieces(scene, settings, 4096.0);
+    expectSameInChunks(scene, settings, 4096.0);
   }
 }
 
@@ -114,7 +114,7 @@ TEST_F(Submissions, LightShafts) {
   RenderSettings settings;
   settings.technique = Technique::lpv;
   settings.lpv.shafts = true;
-  expectSameInPieces(scene, settings, 65536.0);
+  expectSameInChunks(scene, settings, 65536.0);
 }
 
 // A watchdog times all that lies between two flushes: rounds of paths, parts of a list, steps, a map after the other.
@@ -143,7 +143,7 @@ TEST_F(Submissions, RoundsAreHandedOverOneByOne) {
 
 // The walk of shaders/irradiance_cache/gather/gather.comp through a light tree, with other choices of the nodes that
 // are opened.
-double turnsOfWalk(int depth, int top, int layers, const std::function<bool(int turn, int depth)>& opens) {
+double iterationsOfWalk(int depth, int top, int layers, const std::function<bool(int turn, int depth)>& opens) {
   const std::uint64_t bits = 2 * static_cast<std::uint64_t>(top);
   const auto firstOf = [](int d) { return ((std::uint64_t{1} << (2 * d)) - 1) / 3; };
   const auto depthOf = [&](std::uint64_t node) {
@@ -175,15 +175,15 @@ TEST_F(Submissions, NoLaneGathersForLongerThanIsSaid) {
   for (const auto& [depth, layers] : {std::pair(8, 1), {8, 6}, {12, 6}, {13, 1}}) {
     const int top = std::min(depth - 1, LightTree::kTop);
     // Without the texels near by, the way to a leaf and the ray.
-    const double most = LightGather::turnsOfLane(depth, top, layers) - CACHE_MOST_NEAR - 4.0 * depth - gl::kTurnsOfRay;
+    const double most = LightGather::iterationsOfLane(depth, top, layers) - CACHE_MOST_NEAR - 4.0 * depth - gl::kIterationsOfRay;
     for (int last = CACHE_MOST_OPENING - 3 * depth; last <= CACHE_MOST_OPENING; ++last) {
       // Waits before the last levels, then opens all the way down.
-      const double turns =
-          turnsOfWalk(depth, top, layers, [&](int turn, int at) { return turn >= last - depth || at + 4 < depth; });
-      EXPECT_LE(turns, most) << depth << ", " << layers;
-      longest = std::max(longest, turns / most);
+      const double iterations =
+          iterationsOfWalk(depth, top, layers, [&](int turn, int at) { return turn >= last - depth || at + 4 < depth; });
+      EXPECT_LE(iterations, most) << depth << ", " << layers;
+      longest = std::max(longest, iterations / most);
     }
-    EXPECT_LE(LightGather::turnsOfLane(depth, top, layers) * CACHE_LANES * CACHE_PART_GROUPS, kMost);
+    EXPECT_LE(LightGather::iterationsOfLane(depth, top, layers) * CACHE_LANES * CACHE_PART_GROUPS, kMost);
   }
   EXPECT_GT(longest, 0.98);
 }
@@ -195,7 +195,7 @@ TEST_F(Submissions, VolumesAtTheirLargest) {
   settings.lpv.cascades.cells = 128;
   settings.lpv.cascades.cascades = MAX_CASCADES;
   settings.rsm.size = 8192;
-  for (const bool hasPoints : {false, true}) EXPECT_LE(LpvFrame::largestTurns(settings, hasPoints), kMost);
+  for (const bool hasPoints : {false, true}) EXPECT_LE(LpvFrame::largestIterations(settings, hasPoints), kMost);
   const Scene scene = test::openBox();
   settings = {};
   for (const CacheTransport transport : {CacheTransport::rays, CacheTransport::gather})
@@ -206,8 +206,8 @@ TEST_F(Submissions, VolumesAtTheirLargest) {
       settings.cache.bounceCells = 64;
       settings.size = {16, 16};
       const Renderer renderer(context(), library(), scene, settings);
-      EXPECT_LE(renderer.largestTurns(), kMost) << rays;
-      EXPECT_GT(renderer.largestTurns(), 0.0);
+      EXPECT_LE(renderer.largestIterations(), kMost) << rays;
+      EXPECT_GT(renderer.largestIterations(), 0.0);
     }
 }
 

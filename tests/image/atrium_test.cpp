@@ -35,9 +35,9 @@ class Pictures : public test::GlTest {
 TEST_F(Pictures, TheAtriumIsWhatItsReadmeSays) {
   EXPECT_GE(atrium().triangleCount(), 50000u);
   EXPECT_EQ(atrium().droppedTriangles, 0u);
-  const SceneNeeds needs = analyse(atrium());
-  EXPECT_TRUE(needs.alphaMasks);
-  EXPECT_TRUE(needs.diffuseTextures);
+  const SceneFeatures features = analyse(atrium());
+  EXPECT_TRUE(features.alphaMasks);
+  EXPECT_TRUE(features.diffuseTextures);
   EXPECT_GE(atrium().cameras.size(), 3u);
   EXPECT_GE(readKeyFrames(atrium().keyFrames).size(), 7u);
 }

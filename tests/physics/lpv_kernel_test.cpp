@@ -71,13 +71,13 @@ struct Quadrature {
 template <class Function>
 auto integrateSphere(Function&& function, double lowZ = -1.0, double highZ = 1.0) {
   const Quadrature inZ(24, lowZ, highZ);
-  constexpr int kTurns = 48;
+  constexpr int kIterations = 48;
   decltype(function(kUp)) sum{};
   for (std::size_t i = 0; i < inZ.x.size(); ++i) {
     const double radius = std::sqrt(1.0 - inZ.x[i] * inZ.x[i]);
-    for (int j = 0; j < kTurns; ++j) {
-      const double phi = 2.0 * kPi * (j + 0.5) / kTurns;
-      sum += (inZ.w[i] * 2.0 * kPi / kTurns) *
+    for (int j = 0; j < kIterations; ++j) {
+      const double phi = 2.0 * kPi * (j + 0.5) / kIterations;
+      sum += (inZ.w[i] * 2.0 * kPi / kIterations) *
              function(glm::dvec3(radius * std::cos(phi), radius * std::sin(phi), inZ.x[i]));
     }
   }

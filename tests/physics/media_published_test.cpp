@@ -116,7 +116,7 @@ TEST_F(MediaPublished, WorkRisesWithScattering) {
   // than twice the turns of the one before.
   double turns[4];
   for (int i = 0; i < 4; ++i)
-    turns[i] = draw({"milk", std::pow(10.0, i - 3), 1.0, 1.0, 1.1}, original(), 12).statistics.turns;
+    turns[i] = draw({"milk", std::pow(10.0, i - 3), 1.0, 1.0, 1.1}, original(), 12).statistics.iterations;
   std::printf("turns, milk %.3g: 1 %.2f %.2f %.2f (published times 1 1.50 2.35 2.45)\n", turns[0], turns[1] / turns[0],
               turns[2] / turns[0], turns[3] / turns[0]);
   for (int i = 1; i < 4; ++i) EXPECT_GT(turns[i], 1.1 * turns[i - 1]) << i;

@@ -1,6 +1,6 @@
 // Clearance grids: exact distances, against all triangles one by one and known answers; what counts as dense.
 #include "pathtracer/clearance.hpp"
-#include "scene/needs.hpp"
+#include "scene/features.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include "forward/sun_cascades.hpp"
 #include "forward/sun_frustum.hpp"
 #include "rays/light_table.hpp"
-#include "scene/needs.hpp"
+#include "scene/features.hpp"
 #include "support/temp_folder.hpp"
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -200,7 +200,7 @@ TEST(SceneLights, NeedsAreRaisedByLampsThatShine) {
   scene.meshes.push_back(mesh);
   scene.spots = {SpotLight{}};
   scene.points = {PointLight{}};
-  EXPECT_EQ(analyse(scene), SceneNeeds{});  // intensity 0
+  EXPECT_EQ(analyse(scene), SceneFeatures{});  // intensity 0
   scene.spots[0].intensity.y = 1.0f;
   EXPECT_TRUE(analyse(scene).spotLights && !analyse(scene).pointLights && analyse(scene).indirect);
   scene.points[0].intensity.z = 1.0f;

@@ -2,7 +2,7 @@
 #include "base/angles.hpp"
 #include "base/image.hpp"
 #include "scene/clear_sky.hpp"
-#include "scene/needs.hpp"
+#include "scene/features.hpp"
 #include "scene/scene.hpp"
 #include "scene/scene_file.hpp"
 #include "support/contains.hpp"

@@ -1,7 +1,7 @@
 // Models through Assimp: geometry, materials, textures, and what broken or odd files lead to.
 #include "base/files.hpp"
 #include "base/log.hpp"
-#include "scene/needs.hpp"
+#include "scene/features.hpp"
 #include "scene/scene.hpp"
 #include "support/contains.hpp"
 #include "support/temp_folder.hpp"

@@ -2,7 +2,7 @@
 // Skipped where the shared test data is missing.
 #include "base/log.hpp"
 #include "scene/key_frames.hpp"
-#include "scene/needs.hpp"
+#include "scene/features.hpp"
 #include "scene/scene.hpp"
 #include "support/ray_caster.hpp"
 #include "support/temp_folder.hpp"
@@ -64,9 +64,9 @@ TEST(SponzaTest, MaterialsAreReadRight) {
   EXPECT_EQ(materials["leaf"].diffuse, glm::vec3(0.588f));
   EXPECT_EQ(materials["bricks"].specular, glm::vec3(0.01f));
   EXPECT_EQ(materials["bricks"].shininess, 10.0f);
-  const SceneNeeds needs = analyse(scene);
-  EXPECT_TRUE(needs.diffuseTextures && needs.alphaMasks && needs.specular && needs.directionalLight && needs.indirect);
-  EXPECT_FALSE(needs.emission || needs.background);
+  const SceneFeatures features = analyse(scene);
+  EXPECT_TRUE(features.diffuseTextures && features.alphaMasks && features.specular && features.directionalLight && features.indirect);
+  EXPECT_FALSE(features.emission || features.background);
 }
 
 TEST(SponzaTest, TheDefaultSunReachesTheCourtsFloorAndTheCurtains) {

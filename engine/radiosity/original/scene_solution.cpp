@@ -3,7 +3,7 @@
 #include "base/error.hpp"
 #include "radiosity/direct_light.hpp"
 #include "radiosity/original/rad_scene.hpp"
-#include "scene/needs.hpp"
+#include "scene/features.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-// SceneNeeds: the features that a scene and the chosen settings require (no GL, pure).
+// SceneFeatures: the features that a scene and the chosen settings require (no GL, pure).
 //
 // The only source of shader flags and of decisions what to build. A feature that is false here is not compiled,
 // allocated or run.
@@ -12,7 +12,7 @@
 
 namespace lucerna {
 
-struct SceneNeeds {
+struct SceneFeatures {
   bool diffuseTextures = false;  ///< any drawn mesh has an albedo texture
   bool alphaMasks = false;  ///< any drawn mesh is cut out by a mask
   bool specular = false;  ///< any drawn mesh has Ks > 0
@@ -44,10 +44,10 @@ struct SceneNeeds {
   std::vector<std::pair<std::string, bool>> named() const;
   /// Any light from one point or one direction: these have shadow maps and reflective shadow maps.
   bool anyLight() const { return directionalLight || spotLights || pointLights; }
-  bool operator==(const SceneNeeds&) const = default;
+  bool operator==(const SceneFeatures&) const = default;
 };
 
-SceneNeeds analyse(const Scene& scene);
+SceneFeatures analyse(const Scene& scene);
 
 /// Whether light scatters about 32 times or more in a body of that extent: the path tracer then walks without rays if
 /// possible.

@@ -1,5 +1,5 @@
-// SceneNeeds from a scene: one pass over the drawn meshes.
-#include "scene/needs.hpp"
+// SceneFeatures from a scene: one pass over the drawn meshes.
+#include "scene/features.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -42,7 +42,7 @@ bool isDense(const Medium& medium, double extent) {
   return false;
 }
 
-std::vector<std::pair<std::string, bool>> SceneNeeds::named() const {
+std::vector<std::pair<std::string, bool>> SceneFeatures::named() const {
   return {
       {"diffuseTextures", diffuseTextures},
       {"alphaMasks", alphaMasks},
@@ -71,54 +71,54 @@ std::vector<std::pair<std::string, bool>> SceneNeeds::named() const {
   };
 }
 
-SceneNeeds analyse(const Scene& scene) {
-  SceneNeeds needs;
+SceneFeatures analyse(const Scene& scene) {
+  SceneFeatures features;
   bool reflects = false;
   const auto addMedium = [&](int index) {
     if (index < 0 || index >= static_cast<int>(scene.media.size())) return;
     const Medium& medium = scene.media[static_cast<std::size_t>(index)];
     const bool emits = anyPositive(medium.emission);
     if (!emits && !anyPositive(medium.scattering) && !anyPositive(medium.absorption)) return;
-    needs.media = true;
-    needs.volumeEmission |= emits;
-    needs.heterogeneousMedia |= medium.grid.has_value();
+    features.media = true;
+    features.volumeEmission |= emits;
+    features.heterogeneousMedia |= medium.grid.has_value();
   };
   addMedium(scene.cameraMedium);
   for (const Mesh& mesh : scene.meshes) {
     if (mesh.indexCount == 0) continue;
     const Material& material = scene.materials[static_cast<std::size_t>(mesh.material)];
-    needs.diffuseTextures |= material.diffuseTexture >= 0;
-    needs.alphaMasks |= material.alphaMasked;
-    needs.specular |= anyPositive(material.specular);
-    needs.emission |= anyPositive(material.emission);
-    needs.emissionTextures |= anyPositive(material.emission) && material.emissionTexture >= 0;
-    needs.normalMaps |= material.normalTexture >= 0 && material.normalScale != 0.0f;
-    needs.metalMaps |= material.metalMap.has_value();
-    needs.smoothNormals = needs.smoothNormals || isSmooth(scene, mesh);
-    needs.mirrors |= material.bsdf == Bsdf::mirror;
+    features.diffuseTextures |= material.diffuseTexture >= 0;
+    features.alphaMasks |= material.alphaMasked;
+    features.specular |= anyPositive(material.specular);
+    features.emission |= anyPositive(material.emission);
+    features.emissionTextures |= anyPositive(material.emission) && material.emissionTexture >= 0;
+    features.normalMaps |= material.normalTexture >= 0 && material.normalScale != 0.0f;
+    features.metalMaps |= material.metalMap.has_value();
+    features.smoothNormals = features.smoothNormals || isSmooth(scene, mesh);
+    features.mirrors |= material.bsdf == Bsdf::mirror;
     // A picture's mean may be non-metallic even if some texels are metal.
-    needs.conductors |= material.bsdf == Bsdf::conductor ||
+    features.conductors |= material.bsdf == Bsdf::conductor ||
                         (material.bsdf == Bsdf::diffuse && material.metalMap && material.metalMap->metallic > 0.5f);
-    needs.dielectrics |= material.bsdf == Bsdf::dielectric;
-    needs.roughDielectrics |= material.bsdf == Bsdf::dielectric && material.roughness > 0.0f;
-    needs.nullBoundaries |= material.bsdf == Bsdf::none;
+    features.dielectrics |= material.bsdf == Bsdf::dielectric;
+    features.roughDielectrics |= material.bsdf == Bsdf::dielectric && material.roughness > 0.0f;
+    features.nullBoundaries |= material.bsdf == Bsdf::none;
     if (material.bsdf == Bsdf::dielectric || material.bsdf == Bsdf::none) addMedium(material.interior);
     if (material.bsdf == Bsdf::dielectric && material.interior >= 0 &&
         material.interior < static_cast<int>(scene.media.size()))
-      needs.denseMedia = needs.denseMedia || isDense(scene.media[static_cast<std::size_t>(material.interior)],
+      features.denseMedia = features.denseMedia || isDense(scene.media[static_cast<std::size_t>(material.interior)],
                                                      glm::length(mesh.bounds.extent()));
     // A texture only scales the factor down, so the factor alone decides whether anything can be reflected.
     reflects |= anyPositive(material.diffuse);
   }
-  needs.directionalLight = scene.sun && anyPositive(scene.sun->irradiance);
-  needs.background = anyPositive(scene.background);
-  for (const SpotLight& light : scene.spots) needs.spotLights |= anyPositive(light.intensity);
-  for (const PointLight& light : scene.points) needs.pointLights |= anyPositive(light.intensity);
-  needs.environment = scene.environment && anyPositive(scene.environment->radiance) &&
+  features.directionalLight = scene.sun && anyPositive(scene.sun->irradiance);
+  features.background = anyPositive(scene.background);
+  for (const SpotLight& light : scene.spots) features.spotLights |= anyPositive(light.intensity);
+  for (const PointLight& light : scene.points) features.pointLights |= anyPositive(light.intensity);
+  features.environment = scene.environment && anyPositive(scene.environment->radiance) &&
                       (!scene.environment->picture || anyPositive(*scene.environment->picture));
-  needs.environmentPicture = needs.environment && scene.environment->picture.has_value();
-  needs.indirect = reflects && (needs.anyLight() || needs.emission);
-  return needs;
+  features.environmentPicture = features.environment && scene.environment->picture.has_value();
+  features.indirect = reflects && (features.anyLight() || features.emission);
+  return features;
 }
 
 }  // namespace lucerna

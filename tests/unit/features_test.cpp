@@ -1,5 +1,5 @@
-// SceneNeeds: each flag is up exactly where a drawn mesh or a light asks for it.
-#include "scene/needs.hpp"
+// SceneFeatures: each flag is up exactly where a drawn mesh or a light asks for it.
+#include "scene/features.hpp"
 
 #include <gtest/gtest.h>
 
@@ -21,14 +21,14 @@ Scene plainScene() {
   return scene;
 }
 
-SceneNeeds plainNeeds() {
-  SceneNeeds needs;
-  needs.directionalLight = true;
-  needs.indirect = true;
-  return needs;
+SceneFeatures plainNeeds() {
+  SceneFeatures features;
+  features.directionalLight = true;
+  features.indirect = true;
+  return features;
 }
 
-TEST(SceneNeedsTest, AnEmptySceneNeedsNothing) { EXPECT_EQ(analyse(Scene{}), SceneNeeds{}); }
+TEST(SceneNeedsTest, AnEmptySceneNeedsNothing) { EXPECT_EQ(analyse(Scene{}), SceneFeatures{}); }
 
 TEST(SceneNeedsTest, APlainSceneNeedsOnlyItsLight) { EXPECT_EQ(analyse(plainScene()), plainNeeds()); }
 
@@ -36,34 +36,34 @@ TEST(SceneNeedsTest, EachFeatureRaisesItsFlagAlone) {
   struct Case {
     const char* name;
     std::function<void(Scene&)> change;
-    bool SceneNeeds::*flag;
+    bool SceneFeatures::*flag;
   };
   const std::vector<Case> cases = {
-      {"texture", [](Scene& s) { s.materials[0].diffuseTexture = 0; }, &SceneNeeds::diffuseTextures},
-      {"mask", [](Scene& s) { s.materials[0].alphaMasked = true; }, &SceneNeeds::alphaMasks},
-      {"specular", [](Scene& s) { s.materials[0].specular.z = 0.01f; }, &SceneNeeds::specular},
-      {"normal map", [](Scene& s) { s.materials[0].normalTexture = 0; }, &SceneNeeds::normalMaps},
+      {"texture", [](Scene& s) { s.materials[0].diffuseTexture = 0; }, &SceneFeatures::diffuseTextures},
+      {"mask", [](Scene& s) { s.materials[0].alphaMasked = true; }, &SceneFeatures::alphaMasks},
+      {"specular", [](Scene& s) { s.materials[0].specular.z = 0.01f; }, &SceneFeatures::specular},
+      {"normal map", [](Scene& s) { s.materials[0].normalTexture = 0; }, &SceneFeatures::normalMaps},
       {"map of no metal",
        [](Scene& s) {
          s.materials[0].metalMap = MetalMap{glm::vec3(0.5f), 0.5f, 1.0f, 0};
        },
-       &SceneNeeds::metalMaps},
-      {"mirror", [](Scene& s) { s.materials[0].bsdf = Bsdf::mirror; }, &SceneNeeds::mirrors},
-      {"conductor", [](Scene& s) { s.materials[0].bsdf = Bsdf::conductor; }, &SceneNeeds::conductors},
-      {"dielectric", [](Scene& s) { s.materials[0].bsdf = Bsdf::dielectric; }, &SceneNeeds::dielectrics},
-      {"boundary", [](Scene& s) { s.materials[0].bsdf = Bsdf::none; }, &SceneNeeds::nullBoundaries},
+       &SceneFeatures::metalMaps},
+      {"mirror", [](Scene& s) { s.materials[0].bsdf = Bsdf::mirror; }, &SceneFeatures::mirrors},
+      {"conductor", [](Scene& s) { s.materials[0].bsdf = Bsdf::conductor; }, &SceneFeatures::conductors},
+      {"dielectric", [](Scene& s) { s.materials[0].bsdf = Bsdf::dielectric; }, &SceneFeatures::dielectrics},
+      {"boundary", [](Scene& s) { s.materials[0].bsdf = Bsdf::none; }, &SceneFeatures::nullBoundaries},
       {"environment",
        [](Scene& s) {
          s.environment = Environment{glm::vec3(0.0f, 1.0f, 0.0f), {}, 0.0};
        },
-       &SceneNeeds::environment},
-      {"emission", [](Scene& s) { s.materials[0].emission.y = 1e-6f; }, &SceneNeeds::emission},
-      {"background", [](Scene& s) { s.background.x = 0.1f; }, &SceneNeeds::background},
+       &SceneFeatures::environment},
+      {"emission", [](Scene& s) { s.materials[0].emission.y = 1e-6f; }, &SceneFeatures::emission},
+      {"background", [](Scene& s) { s.background.x = 0.1f; }, &SceneFeatures::background},
   };
   for (const Case& c : cases) {
     Scene scene = plainScene();
     c.change(scene);
-    SceneNeeds expected = plainNeeds();
+    SceneFeatures expected = plainNeeds();
     expected.*c.flag = true;
     EXPECT_EQ(analyse(scene), expected) << c.name;
   }
@@ -96,9 +96,9 @@ TEST(SceneNeedsTest, MaterialsOfNoDrawnMeshDoNotCount) {
 TEST(SceneNeedsTest, NoSunOrADarkSunIsNoLight) {
   Scene scene = plainScene();
   scene.sun->irradiance = glm::vec3(0.0f);
-  EXPECT_EQ(analyse(scene), SceneNeeds{});
+  EXPECT_EQ(analyse(scene), SceneFeatures{});
   scene.sun.reset();
-  EXPECT_EQ(analyse(scene), SceneNeeds{});
+  EXPECT_EQ(analyse(scene), SceneFeatures{});
 }
 
 TEST(SceneNeedsTest, IndirectLightNeedsALightAndAnAlbedo) {
@@ -114,10 +114,10 @@ TEST(SceneNeedsTest, IndirectLightNeedsALightAndAnAlbedo) {
 }
 
 TEST(SceneNeedsTest, NamesComeInDeclarationOrder) {
-  SceneNeeds needs;
-  needs.specular = true;
-  const auto named = needs.named();
-  ASSERT_EQ(named.size(), sizeof(SceneNeeds));  // a bool each: a new flag must get its name
+  SceneFeatures features;
+  features.specular = true;
+  const auto named = features.named();
+  ASSERT_EQ(named.size(), sizeof(SceneFeatures));  // a bool each: a new flag must get its name
   EXPECT_EQ(named[0].first, "diffuseTextures");
   EXPECT_EQ(named[2], (std::pair<std::string, bool>("specular", true)));
   EXPECT_EQ(named[6].first, "indirect");
