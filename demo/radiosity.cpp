@@ -230,12 +230,6 @@ Work addSolve(Command app) {
            app.addOption("--max-sweeps", options->maxSweeps, "stop after this many sweeps (0: when nothing changes)")
                .showDefault());
   app.addOption("--near-plane", options->nearPlane, "near plane, scene units (1e-4 of the scene's diagonal)");
-  app.addAction("--near",
-                [options](double distance) {
-                  logWarning("--near: now written --near-plane");
-                  options->nearPlane = distance;
-                })
-      .hidden();
   shortFor(
       "radiosity.seed",
       app.addOption("--seed", options->seed, "of the random roll with radiosity.fixed-orientation=off").showDefault());

@@ -400,8 +400,8 @@ Work addCheck(Command app) {
       "Each unit is a process of its own under a time limit: a hang, a crash or a reset is a row of the report. A unit "
       "that hangs is run once more with LUCERNA_FINISH_PASSES=1, to name the pass. Interrupted, the same command "
       "resumes.\n"
-      "Exit codes: 0 all right (slow and not run count as right), 1 something is wrong, hung, crashed or failed, 3 no "
-      "OpenGL 4.3, 130 interrupted.");
+      "Exit codes: 0 nothing wrong (slow and not run count as right), 1 something is wrong, hung, crashed or failed, 3 "
+      "no OpenGL 4.3, 130 interrupted.");
   return [options] { return check::runCheck(*options); };
 }
 

@@ -92,9 +92,12 @@ std::string Report::page() const {
   std::string text = fmt::format("lucerna {}\nrenderer  {}\nOpenGL    {}\nhost      {}\nsystem    {}\nCPU       {}\n",
                                  bench::programVersion(), identity(rows, "renderer"), identity(rows, "opengl"),
                                  identity(rows, "host"), systemName(), bench::cpuName());
-  const auto ran = std::ranges::count_if(rows, [](const Row& row) { return row.status != Status::notRun; });
+  const auto ran = static_cast<std::size_t>(
+      std::ranges::count_if(rows, [](const Row& row) { return row.status != Status::notRun; }));
   text += fmt::format("command   {}, {:.0f} s\nverdict   {}\n", command, seconds,
-                      faults() == 0 ? fmt::format("all right; {} of {} units ran", ran, rows.size())
+                      faults() == 0 ? fmt::format("{}; {} of {} units ran",
+                                                  ran == rows.size() ? "all right" : "nothing wrong in those that ran",
+                                                  ran, rows.size())
                                     : fmt::format("{} of {} units are wrong or failed", faults(), rows.size()));
   std::vector<std::string> parts;
   for (const Row& row : rows)

@@ -6,7 +6,7 @@
 #include "base/statistics.hpp"
 #include "bench/bench.hpp"
 #include "gl/draw.hpp"
-#include "walk/paths.hpp"
+#include "shared/paths.hpp"
 
 #include <fmt/core.h>
 

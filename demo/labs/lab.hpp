@@ -14,6 +14,7 @@
 
 #include "base/image.hpp"
 #include "gl/program.hpp"
+#include "labs/random.hpp"
 
 #include <glm/glm.hpp>
 
@@ -32,19 +33,6 @@ namespace lucerna::demo::labs {
 constexpr double kFalseAlarm = 2e-5;  ///< probability per run of `lab check`
 constexpr int kMostTests = 40;  ///< maximum number of statistical tests in a lab
 constexpr double kFirmness = 1e-6;  ///< relative float rounding allowed in a mean in addition to its noise
-
-/// splitmix64 [Steele2014]: the same numbers on every machine.
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : state_(seed) {}
-  std::uint64_t word();
-  double uniform();  ///< in [0,1), 53 bits
-  double uniform(double least, double most) { return least + (most - least) * uniform(); }
-  glm::dvec3 direction();  ///< uniform on the sphere
-
- private:
-  std::uint64_t state_;
-};
 
 /// A typical mistake: the value it would give, and the message to the student.
 struct Mistake {
@@ -159,8 +147,6 @@ struct Lab {
 std::span<const Lab> allLabs();
 /// Throws Error(badInput) listing the numbers.
 const Lab& findLab(const std::string& number);
-/// demo/labs in the data folder: the installed labs.
-std::filesystem::path labsFolder();
 
 /// The parts of a hand-in that are judged: files, seed and numbers.
 struct HandIn {

@@ -79,11 +79,6 @@ Option Option::typeName(const std::string& name) const {
   return *this;
 }
 
-Option Option::hidden() const {
-  option_->group("");
-  return *this;
-}
-
 std::string Option::name() const { return option_->get_name(); }
 std::size_t Option::count() const { return option_->count(); }
 std::string Option::last() const { return option_->results().back(); }
@@ -111,10 +106,6 @@ Option Command::addFlag(const std::string& names, bool& value, const std::string
 Option Command::addOption(const std::string& names, const std::string& meaning) const {
   return Option(*app_->add_option_function<std::string>(
       names, [](const std::string&) {}, meaning));
-}
-
-Option Command::addAction(const std::string& names, const std::function<void(double)>& take) const {
-  return Option(*app_->add_option_function<double>(names, take));
 }
 
 Option Command::find(const std::string& name) const { return Option(*app_->get_option(name)); }

@@ -35,7 +35,6 @@ class Option {
   Option delimiter(char between) const;  ///< for a list in one argument
   Option values(int least, int most) const;  ///< number of values
   Option typeName(const std::string& name) const;
-  Option hidden() const;  ///< left out of help, manual and completions
 
   // Valid after parsing.
   std::string name() const;
@@ -60,8 +59,6 @@ class Command {
   Option addFlag(const std::string& names, bool& value, const std::string& meaning) const;
   /// An option without a variable: Option::last() returns its value.
   Option addOption(const std::string& names, const std::string& meaning) const;
-  /// An option that is passed to `take` during parsing.
-  Option addAction(const std::string& names, const std::function<void(double)>& take) const;
   Option find(const std::string& name) const;
   Command parent() const;  ///< the command that contains it
   void hide() const;  ///< from help, manual and completions

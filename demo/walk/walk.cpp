@@ -16,7 +16,7 @@
 #include "settings/deviations.hpp"
 #include "walk/keys.hpp"
 #include "walk/options.hpp"
-#include "walk/paths.hpp"
+#include "shared/paths.hpp"
 #include "walk/window.hpp"
 
 #include <fmt/core.h>

@@ -11,7 +11,7 @@
 #include "gl/pass.hpp"
 #include "walk/ground.hpp"
 #include "walk/panel.hpp"
-#include "walk/paths.hpp"
+#include "shared/paths.hpp"
 #include "walk/pixel_section.hpp"
 #include "walk/shots.hpp"
 

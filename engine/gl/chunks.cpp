@@ -12,7 +12,8 @@ namespace lucerna::gl {
 namespace {
 
 std::uint32_t unitsOf(double iterations, double iterationsOfUnit, std::uint32_t most) {
-  return static_cast<std::uint32_t>(std::clamp(std::floor(iterations / iterationsOfUnit), 1.0, static_cast<double>(most)));
+  return static_cast<std::uint32_t>(
+      std::clamp(std::floor(iterations / iterationsOfUnit), 1.0, static_cast<double>(most)));
 }
 
 thread_local double iterationsSinceFlush = 0.0, largestSubmission = 0.0;
@@ -33,8 +34,12 @@ double Submission::largest() { return largestSubmission; }
 void Submission::forget() { iterationsSinceFlush = largestSubmission = 0.0; }
 
 ChunkSize::ChunkSize(double seconds, double iterationsOfUnit, std::uint32_t most, double unmeasured)
-    : seconds_(seconds), iterationsOfUnit_(iterationsOfUnit), mostIterations_(kMostOverUnmeasured * unmeasured), most_(most) {
-  CHECK(seconds > 0.0 && iterationsOfUnit > 0.0 && most > 0, "{} s, {} iterations, {} units", seconds, iterationsOfUnit, most);
+    : seconds_(seconds),
+      iterationsOfUnit_(iterationsOfUnit),
+      mostIterations_(kMostOverUnmeasured * unmeasured),
+      most_(most) {
+  CHECK(seconds > 0.0 && iterationsOfUnit > 0.0 && most > 0, "{} s, {} iterations, {} units", seconds, iterationsOfUnit,
+        most);
   units_ = first_ = unitsOf(unmeasured, iterationsOfUnit, most);
 }
 

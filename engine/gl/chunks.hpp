@@ -1,9 +1,9 @@
 // Divides work into chunks, so that no submission blocks a GPU. A driver resets a GPU that does not respond (Windows
 // after 2 s, Linux' i915 after 2.5 s, amdgpu after 10 s), and until then nothing else is drawn.
 //
-// A chunk consists of units: hemicubes, rows of pixels, iterations of all lanes of a tile. Work is counted in iterations: loop
-// iterations of about the cost of one step of a ray through its hierarchy, summed over work items. A GPU at the low end
-// of OpenGL 4.3 does 0.3 to 0.5 billion per second. So:
+// A chunk consists of units: hemicubes, rows of pixels, iterations of all lanes of a tile. Work is counted in
+// iterations: loop iterations of about the cost of one step of a ray through its hierarchy, summed over work items. A
+// GPU at the low end of OpenGL 4.3 does 0.3 to 0.5 billion per second. So:
 //   - before any measurement a chunk has kUnmeasuredIterations, about 0.2 s there;
 //   - then the size follows the measured time, growing to at most twice that of the chunk before;
 //   - chunks never exceed four times kUnmeasuredIterations, under a second there: the measured chunk may be sky and the
@@ -33,8 +33,8 @@ class Submission {
 /// Units of the next chunk, at least one: a unit cannot be cut.
 class ChunkSize {
  public:
-  /// seconds: target time of a chunk; iterationsOfUnit: estimate, over all its work items; most: limit of units; unmeasured:
-  /// iterations of the first chunk.
+  /// seconds: target time of a chunk; iterationsOfUnit: estimate, over all its work items; most: limit of units;
+  /// unmeasured: iterations of the first chunk.
   ChunkSize(double seconds, double iterationsOfUnit, std::uint32_t most, double unmeasured = kUnmeasuredIterations);
 
   std::uint32_t units() const { return units_; }

@@ -4,6 +4,7 @@
 // in a window, so only a host presents.
 #pragma once
 
+#include "base/log.hpp"
 #include "base/named_values.hpp"
 #include "host/input.hpp"
 
@@ -31,7 +32,7 @@ struct HostOptions {
   std::string windowTitle = "Lucerna";
   bool windowVisible = true;
   bool swapAtRefresh = true;  ///< wait for the display's refresh; off where frames per second are measured
-  bool debugContext = false;  ///< request a debug context if the host can
+  bool debugContext = logLevel() == LogLevel::verbose;  ///< where the host can: drivers say more in a debug context
 };
 
 class Host {

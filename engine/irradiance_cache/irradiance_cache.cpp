@@ -19,7 +19,8 @@ namespace {
 constexpr GLuint kSlotsBuffer = 1, kKeptBuffer = 2, kPrefetchBuffer = 2, kWorkBeforeBuffer = 3;
 constexpr GLuint kSlotsUnit = 7, kKeysUnit = 1, kSeenUnit = 6;  // where rays are traced, 0 has the materials
 constexpr std::uint32_t kSegmentsOfAll = 64;  // of a path that meets no records; it misses a share of albedo^64
-constexpr std::uint32_t kSoftwareIterations = 2000, kMostIterations = 1u << 16;  // like the path tracer's, less one segment
+constexpr std::uint32_t kSoftwareIterations = 2000,
+                        kMostIterations = 1u << 16;  // like the path tracer's, less one segment
 constexpr std::size_t kMostPaths = std::size_t{1} << 20;  // per submission
 constexpr std::size_t kKeyPixels = std::size_t{1} << 23;  // number that a key distinguishes
 

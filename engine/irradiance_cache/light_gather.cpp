@@ -76,7 +76,8 @@ double LightGather::iterationsOfLane(int depth, int top, int layers) {
 }
 
 double LightGather::mostIterations() const {
-  const double iterations = std::max(iterationsOfLane(kDeepest, LightTree::kTop, 6), kRaysOfLane * gl::kIterationsOfRay);
+  const double iterations =
+      std::max(iterationsOfLane(kDeepest, LightTree::kTop, 6), kRaysOfLane * gl::kIterationsOfRay);
   return iterations * CACHE_LANES * CACHE_PART_GROUPS;
 }
 

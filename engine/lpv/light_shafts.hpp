@@ -33,14 +33,17 @@ class LightShafts {
     bool sun = true, volume = true;  ///< whether its light scatters
     bool fullFloat = false;  ///< radiance in 32 bits, otherwise 16
     gl::ShaderFlags lookup;  ///< of the volume (LightPropagationVolume::lookupFlags); not read without it
-    double unmeasuredIterations = gl::kUnmeasuredIterations;  ///< of a submission where a frame is cut (gl/picture_chunks.hpp)
+    double unmeasuredIterations =
+        gl::kUnmeasuredIterations;  ///< of a submission where a frame is cut (gl/picture_chunks.hpp)
   };
   LightShafts(gl::ProgramLibrary& programs, const Haze& haze, const Settings& settings);
 
   /// For every program with the flag HAZE: attenuates light that arrives through the medium.
   void bind() const;
   void record(const gl::Texture& radiance, const gl::Texture& depth, const glm::dmat4& clipFromWorld);
-  double largestIterations() const { return chunks_.largestIterations(); }  ///< estimated, of the largest submission so far
+  double largestIterations() const {
+    return chunks_.largestIterations();
+  }  ///< estimated, of the largest submission so far
   std::size_t gpuBytes() const { return constants_.bytes(); }
 
  private:

@@ -91,14 +91,16 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
       iterations_(settings.submissionSeconds, kLanesOfTile, mostIterations_) {
   const gl::Capabilities& capabilities = context.capabilities();
   CHECK(settings.size.x > 0 && settings.size.y > 0, "{} x {} pixels", settings.size.x, settings.size.y);
-  if (settings.diffuseOnly) features_.mirrors = features_.conductors = features_.dielectrics = features_.roughDielectrics = false;
+  if (settings.diffuseOnly)
+    features_.mirrors = features_.conductors = features_.dielectrics = features_.roughDielectrics = false;
 
   boundaries_ = rankBoundaries(scene, settings.diffuseOnly);
   touching_ = boundariesMayTouch(scene, boundaries_);
-  lampsOutside_ = features_.dielectrics && !settings.deviations.straightShadowRays && areLampsOutside(scene, boundaries_);
+  lampsOutside_ =
+      features_.dielectrics && !settings.deviations.straightShadowRays && areLampsOutside(scene, boundaries_);
   const bool published = settings.deviations.distanceWithoutPdf || settings.deviations.boostedInteraction;
-  features_.denseMedia =
-      features_.denseMedia && features_.dielectrics && settings.walks && !published && (!settings.nextEvent || lampsOutside_);
+  features_.denseMedia = features_.denseMedia && features_.dielectrics && settings.walks && !published &&
+                         (!settings.nextEvent || lampsOutside_);
   scene_.emplace(scene, features_, capabilities,
                  PathScene::Settings{settings.diffuseOnly, settings.nextEvent, settings.rays},
                  boundaries_.rankOfMaterial);

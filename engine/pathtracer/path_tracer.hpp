@@ -70,8 +70,8 @@ class PathTracer {
     double leakedPaths = 0.0;  ///< ended because found outside the scene yet inside a closed boundary, since setCamera
     double wrongCrossings =
         0.0;  ///< of boundaries left without having been entered, or entered too often: open or turned meshes
-    double iterations = 0.0;  ///< of loops, in all lanes since setCamera: rays' nodes and triangles, steps in media: what
-                         ///< time is spent on, whatever the clock
+    double iterations = 0.0;  ///< of loops, in all lanes since setCamera: rays' nodes and triangles, steps in media:
+                              ///< what time is spent on, whatever the clock
     double collisions = 0.0;  ///< in media, likewise
     double relativeError =
         0.0;  ///< standardError over the picture's mean, channels averaged; 0 for a black picture without error
@@ -120,8 +120,8 @@ class PathTracer {
   const SceneFeatures& features() const { return features_; }
   std::size_t gpuBytes() const;
   /// Number of lanes times iterations of the slowest lane, for the largest submission so far; `begun`: among those that
-  /// began a tile, whose cost was unknown. A lane begins no segment after its share of iterations, so it exceeds the share
-  /// by at most one segment.
+  /// began a tile, whose cost was unknown. A lane begins no segment after its share of iterations, so it exceeds the
+  /// share by at most one segment.
   struct Submissions {
     std::uint64_t largest = 0, begun = 0;
   };

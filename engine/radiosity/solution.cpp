@@ -225,6 +225,9 @@ RadiosityOrigins originsOf(const gl::Context& context, gl::ProgramLibrary& progr
     if (!(weight > 0.0)) continue;
     origins.lamps += weight * solution.direct[i];
     origins.sky += weight * solution.fromSky[i];
+    origins.repairOfEmitted += weight * solution.fromEmitters[i];
+    origins.repairOfReflected +=
+        weight * (solution.irradiance[i] - solution.direct[i] - solution.fromSky[i] - solution.fromEmitters[i]);
     const FormFactorRows rows = hemicubes.rows(static_cast<int>(i), 1);
     for (std::size_t k = 0; k < rows.patches.size(); ++k)
       factors[rows.patches[k]] += weight * static_cast<double>(rows.factors[k]);
@@ -232,6 +235,8 @@ RadiosityOrigins originsOf(const gl::Context& context, gl::ProgramLibrary& progr
   for (const auto& [i, factor] : factors) {
     const glm::dvec3 emission = mesh.patches[i].emission;
     origins.patches.push_back({i, factor, factor * emission, factor * (solution.exitance[i] - emission)});
+    origins.repairOfEmitted -= origins.patches.back().emitted;
+    origins.repairOfReflected -= origins.patches.back().reflected;
   }
   const auto brightness = [](const RadiosityOrigins::FromPatch& p) { return mean3(p.emitted + p.reflected); };
   std::ranges::sort(origins.patches, [&](const auto& a, const auto& b) { return brightness(a) > brightness(b); });

@@ -114,10 +114,12 @@ struct RadiosityOrigins {
     glm::dvec3 emitted, reflected;
   };
   std::vector<FromPatch> patches;  ///< the largest first
+  /// The solution's irradiance less that of `patches`: its form factors were repaired (reciprocity, row sums). The
+  /// solver's error is in it too.
+  glm::dvec3 repairOfEmitted{0.0}, repairOfReflected{0.0};
 };
 /// For the point of `patch` with these weights of its corners; `flat`: for the patch as a whole. The form factors are
-/// recomputed, by hemicubes only; the solution's own were made reciprocal, which explains the difference between this
-/// sum and the solution's irradiance.
+/// recomputed, by hemicubes only.
 RadiosityOrigins originsOf(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
                            const RadiositySolution& solution, const RadiositySolutionSettings& settings,
                            std::uint32_t patch, const glm::dvec3& corners, bool flat);

@@ -55,8 +55,8 @@ PathScene::PathScene(const Scene& scene, const SceneFeatures& features, const gl
     to.diffuseTexture.layer = to.maskTexture.layer = to.emissionTexture.layer = to.normalTexture.layer =
         to.metalTexture.layer = PATH_NO_TEXTURE;
   }
-  const bool textured =
-      features_.diffuseTextures || features_.alphaMasks || features_.emissionTextures || features_.normalMaps || features_.metalMaps;
+  const bool textured = features_.diffuseTextures || features_.alphaMasks || features_.emissionTextures ||
+                        features_.normalMaps || features_.metalMaps;
   if (textured) uploadTextures(scene, capabilities, materials);
 
   std::vector<float> pickDensity;
@@ -236,7 +236,8 @@ void PathScene::bind() const {
 }
 
 gl::ShaderFlags PathScene::flags() const {
-  return {{"TEXTURES", features_.diffuseTextures || features_.emissionTextures || features_.normalMaps || features_.metalMaps},
+  return {{"TEXTURES",
+           features_.diffuseTextures || features_.emissionTextures || features_.normalMaps || features_.metalMaps},
           {"NORMAL_MAPS", features_.normalMaps},
           {"METAL_MAPS", features_.metalMaps},
           {"ALPHA_MASKS", features_.alphaMasks},

@@ -46,8 +46,8 @@ class PathScene {
   };
   /// `needs`: the scene's needs minus those the programs leave out. rankOfMaterial: for closed boundaries (media.hpp);
   /// may be empty. Throws Error(missingCapability) if the scene exceeds the driver's limits.
-  PathScene(const Scene& scene, const SceneFeatures& features, const gl::Capabilities& capabilities, const Settings& settings,
-            const std::vector<int>& rankOfMaterial = {});
+  PathScene(const Scene& scene, const SceneFeatures& features, const gl::Capabilities& capabilities,
+            const Settings& settings, const std::vector<int>& rankOfMaterial = {});
 
   /// Storage blocks 2, 3, 4; texture units 0, 1, 2, 4, 60, 61, 62.
   void bind() const;

@@ -250,6 +250,9 @@ void Renderer::answerOfPatches(const gl::Context& context, gl::ProgramLibrary& p
   if (hasDirect && !byPixel)
     add(answer, "direct", "lamps, of the patches around", reflection * origins.lamps, {position});
   if (hasDirect) add(answer, "direct", "sky, of the patches around", reflection * origins.sky, {position});
+  constexpr const char* kRepair = "repair of the form factors";
+  if (hasDirect && !byPixel) add(answer, "direct", kRepair, reflection * origins.repairOfEmitted, {position});
+  if (hasIndirect) add(answer, "patches", kRepair, reflection * origins.repairOfReflected, {position});
   for (const RadiosityOrigins::FromPatch& from : origins.patches) {
     const glm::dvec3 place = solution.mesh.patches[from.patch].centroid;
     if (hasDirect && !byPixel)

@@ -25,9 +25,7 @@ const std::vector<ReflectiveShadowMap::Outputs>& LightMaps::record(gl::TimeQuery
   outputs_.clear();
   auto spot = parts_.spots.begin(), point = parts_.points.begin();
   for (ReflectiveShadowMap& map : maps_) switch (map.light()) {
-      case ReflectiveShadowMap::Light::sun:
-        outputs_.push_back(map.record(parts_.drawn, parts_.sun));
-        break;
+      case ReflectiveShadowMap::Light::sun: outputs_.push_back(map.record(parts_.drawn, parts_.sun)); break;
       case ReflectiveShadowMap::Light::spot: outputs_.push_back(map.record(parts_.drawn, *spot++)); break;
       case ReflectiveShadowMap::Light::point: outputs_.push_back(map.record(parts_.drawn, *point++)); break;
     }

@@ -22,7 +22,7 @@ glm::dvec3 PixelAnswer::sum() const {
 }
 
 void PixelAnswer::checkSum() const {
-  // Filters weigh the cells of a lookup with 8 bits; among them are brighter ones and negative ones.
+  // Filters of 3D textures weigh the cells of a lookup with 8 bits; among them are brighter ones and negative ones.
   constexpr double kHalfFloats = 1e-3, kFilters = 0.02;
   double brightest = 0.0, largest = 0.0;
   for (int c = 0; c < 3; ++c) {
@@ -30,7 +30,8 @@ void PixelAnswer::checkSum() const {
     for (const PixelShare& share : shares) largest = std::max(largest, std::abs(share.radiance[c]));
   }
   const glm::dvec3 all = sum(), off = glm::abs(all - radiance);
-  const double most = technique == "direct" ? kHalfFloats * brightest : kFilters * std::max(brightest, largest);
+  const bool isFiltered = technique == "lpv" || technique == "irradiance-cache";
+  const double most = isFiltered ? kFilters * std::max(brightest, largest) : kHalfFloats * brightest;
   if (!(std::max({off.x, off.y, off.z}) <= most))
     throw Error(ErrorKind::fault,
                 fmt::format("internal error: pixel {}, {} is {} {} {}, but its parts add up to {} {} {}", pixel.x,

@@ -84,7 +84,7 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
   if (showsDirect()) makeShadowMaps(programs);
 
   const FrameParts frame{context, programs,   settings_,   features_, scene,
-                         origin_, *gpuScene_, sunFrustum_, spots_, points_};
+                         origin_, *gpuScene_, sunFrustum_, spots_,    points_};
   if (RsmFrame::isNeeded(settings, features_)) rsm_.emplace(frame, depth_);
   if (LpvFrame::isNeeded(settings, features_)) lpv_.emplace(frame);
   if (IrradianceCacheFrame::isNeeded(settings, features_)) cache_.emplace(frame, depth_);
@@ -334,19 +334,22 @@ void Renderer::shade(const FrameView& view, bool depthIsDrawn) {
 // Depth is known, so that a pixel shades one surface: its textures, nine texels of the sun's shadow map, four taps of
 // each lamp's, and a lookup of what a technique adds.
 double Renderer::iterationsOfSurface() const {
-  constexpr double kIterationsOfMaterial = 4.0, kIterationsOfSun = 9.0, kIterationsOfLamp = 4.0, kIterationsOfIndirect = 24.0;
+  constexpr double kIterationsOfMaterial = 4.0, kIterationsOfSun = 9.0, kIterationsOfLamp = 4.0,
+                   kIterationsOfIndirect = 24.0;
   const int suns = sunCascades_ ? settings_.sunCascades.cascades : static_cast<int>(shadowMap_.has_value());
   const double lamps = localLights_ ? static_cast<double>(spots_.size() + points_.size()) : 0.0;
   constexpr double kIterationsOfCell = 8.0;
-  const double glossy = lpv_ && lpv_->isGlossy() ? LPV_GLOSSY_RAYS * kIterationsOfCell * settings_.lpv.glossySteps : 0.0;
-  return kIterationsOfMaterial + kIterationsOfSun * suns + kIterationsOfLamp * lamps + (lpv_ || cache_ ? kIterationsOfIndirect : 0.0) +
-         glossy;
+  const double glossy =
+      lpv_ && lpv_->isGlossy() ? LPV_GLOSSY_RAYS * kIterationsOfCell * settings_.lpv.glossySteps : 0.0;
+  return kIterationsOfMaterial + kIterationsOfSun * suns + kIterationsOfLamp * lamps +
+         (lpv_ || cache_ ? kIterationsOfIndirect : 0.0) + glossy;
 }
 
 double Renderer::largestIterations() const {
   double largest = std::max(surfaceChunks_.largestIterations(), shafts_ ? shafts_->largestIterations() : 0.0);
   forTechniques(*this, [&](const auto& technique) {
-    if constexpr (requires { technique.largestIterations(); }) largest = std::max(largest, technique.largestIterations());
+    if constexpr (requires { technique.largestIterations(); })
+      largest = std::max(largest, technique.largestIterations());
   });
   return largest;
 }

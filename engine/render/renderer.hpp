@@ -94,8 +94,8 @@ class Renderer {
   const RadiosityView* radiosity() const { return radiosity_ ? &radiosity_->view() : nullptr; }
   const RsmGather* gather() const { return rsm_ ? &rsm_->gather() : nullptr; }
   const PathTracer* path() const { return path_ ? &path_->tracer() : nullptr; }
-  /// Estimated iterations of the largest submission (gl/chunks.hpp) of any frame so far; of the path tracer, which counts
-  /// them, PathTracer::submissions().
+  /// Estimated iterations of the largest submission (gl/chunks.hpp) of any frame so far; of the path tracer, which
+  /// counts them, PathTracer::submissions().
   double largestIterations() const;
   /// Waits for all pending results, times and counts; for the end of a run, not for a frame.
   void drain();

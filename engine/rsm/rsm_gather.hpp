@@ -70,7 +70,9 @@ class RsmGather {
   const gl::Texture& irradiance() const { return irradiance_; }
   void collect(bool wait = false);  ///< fetches counts that have arrived; wait: waits for all
   const Counts& counts() const { return counts_; }
-  double largestIterations() const { return chunks_.largestIterations(); }  ///< estimated, of the largest submission so far
+  double largestIterations() const {
+    return chunks_.largestIterations();
+  }  ///< estimated, of the largest submission so far
   const Settings& settings() const { return settings_; }
   std::size_t gpuBytes() const;
 

@@ -98,7 +98,7 @@ SceneFeatures analyse(const Scene& scene) {
     features.mirrors |= material.bsdf == Bsdf::mirror;
     // A picture's mean may be non-metallic even if some texels are metal.
     features.conductors |= material.bsdf == Bsdf::conductor ||
-                        (material.bsdf == Bsdf::diffuse && material.metalMap && material.metalMap->metallic > 0.5f);
+                           (material.bsdf == Bsdf::diffuse && material.metalMap && material.metalMap->metallic > 0.5f);
     features.dielectrics |= material.bsdf == Bsdf::dielectric;
     features.roughDielectrics |= material.bsdf == Bsdf::dielectric && material.roughness > 0.0f;
     features.nullBoundaries |= material.bsdf == Bsdf::none;
@@ -106,7 +106,7 @@ SceneFeatures analyse(const Scene& scene) {
     if (material.bsdf == Bsdf::dielectric && material.interior >= 0 &&
         material.interior < static_cast<int>(scene.media.size()))
       features.denseMedia = features.denseMedia || isDense(scene.media[static_cast<std::size_t>(material.interior)],
-                                                     glm::length(mesh.bounds.extent()));
+                                                           glm::length(mesh.bounds.extent()));
     // A texture only scales the factor down, so the factor alone decides whether anything can be reflected.
     reflects |= anyPositive(material.diffuse);
   }
@@ -115,7 +115,7 @@ SceneFeatures analyse(const Scene& scene) {
   for (const SpotLight& light : scene.spots) features.spotLights |= anyPositive(light.intensity);
   for (const PointLight& light : scene.points) features.pointLights |= anyPositive(light.intensity);
   features.environment = scene.environment && anyPositive(scene.environment->radiance) &&
-                      (!scene.environment->picture || anyPositive(*scene.environment->picture));
+                         (!scene.environment->picture || anyPositive(*scene.environment->picture));
   features.environmentPicture = features.environment && scene.environment->picture.has_value();
   features.indirect = reflects && (features.anyLight() || features.emission);
   return features;

@@ -10,7 +10,8 @@ namespace lucerna {
 /// twice the bounds' extent. Representable in float.
 glm::dvec3 floatingOrigin(const Bounds& bounds);
 
-/// `scene` relative to `origin`: surfaces, lamps, media, cameras and bounds. Exact for floatingOrigin() of its own bounds.
+/// `scene` relative to `origin`: surfaces, lamps, media, cameras and bounds. Exact for floatingOrigin() of its own
+/// bounds.
 Scene movedTo(const Scene& scene, const glm::dvec3& origin);
 
 }  // namespace lucerna

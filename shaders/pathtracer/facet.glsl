@@ -2,7 +2,6 @@
 
 // The scattering properties at a path's hit. Lambert: `albedo` is the reflectance; mirrors and conductors: the
 // reflectance at normal incidence.
-// reflectance at normal incidence.
 struct Facet {
   uint kind;
   vec3 albedo;

@@ -69,8 +69,10 @@ void main() {
   } else if (what == 9) {
     DensityRecord g = densityRecords[p.k.x];
     DensityMarch march;
-    if (densityMarchStart(g, p.a.xyz, p.b.xyz, p.a.w, march))
-      r.a = vec4(densityIntegral(g, march.origin, march.direction, march.near, march.last), float(loopIterations), 0.0, 0.0);
+    if (densityMarchStart(g, p.a.xyz, p.b.xyz, p.a.w, march)) {
+      float integral = densityIntegral(g, march.origin, march.direction, march.near, march.last);
+      r.a = vec4(integral, float(loopIterations), 0.0, 0.0);
+    }
   } else if (what == 8) {
     // k.x: entries, lowest rank first, 8 bits each; k.y: their number; k.z: exits, likewise; k.w: their number.
     uvec4 inside = uvec4(0u);

@@ -65,8 +65,8 @@ void addNextEvent(Path path, Surface surface, uint triangle, Facet facet, float 
   if (path.ior != 1.0) return;  // a straight line across a refracting boundary does not reach a lamp
 #endif
   if (all(equal(contribution, vec3(0.0)))) return;
-  queueShadowRay(path, contribution, beside(surface, side > 0.0 ? surface.geometricNormal : -surface.geometricNormal), light,
-           triangle, numbers);
+  vec3 start = beside(surface, side > 0.0 ? surface.geometricNormal : -surface.geometricNormal);
+  queueShadowRay(path, contribution, start, light, triangle, numbers);
 }
 #endif
 
@@ -343,8 +343,8 @@ void main() {
   Hit crossed;          // the boundary that a shadow ray is crossing
   bool right = true;    // whether the path could validly cross the boundary
 #endif
-  // ends: each ray of a path adds 4 turns, up to tracer.iterations; between two of them lie at most 256 boundaries that a
-  // shadow ray crosses, with kMostBesides short rays each
+  // ends: each ray of a path adds 4 iterations, up to tracer.iterations; between two of them lie at most 256 boundaries
+  // that a shadow ray crosses, with kMostBesides short rays each
   for (;;) {
 #if PARKED
     forgetAddresses();

@@ -85,6 +85,10 @@ TEST_F(Ask, SharesAddUpToThePixelOfCacheRecords) {
 
 TEST_F(Ask, SharesAddUpToThePixelOfPatches) {
   expectWhole(kCornell, kSmall + "--technique radiosity --set radiosity.edge=0.1", 32, 20);
+  // Of coarse patches, whose form factors are repaired by a third.
+  for (const char* more : {"", " --set radiosity.flat=on", " --set radiosity.direct=patches",
+                           " --set radiosity.repair=off", " --component indirect"})
+    expectWhole(kCornell, kSmall + "--technique radiosity --set radiosity.edge=1" + more, 50, 50, 1e-3);
 }
 
 // The paths of the answer are those of the picture.

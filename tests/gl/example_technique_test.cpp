@@ -29,7 +29,9 @@ class Absorption {
   };
 
   /// What is not needed is not built: the frame keeps a std::optional<Absorption>.
-  static bool isNeeded(const SceneFeatures&, const Settings& settings) { return settings.coefficient != glm::vec3(0.0f); }
+  static bool isNeeded(const SceneFeatures&, const Settings& settings) {
+    return settings.coefficient != glm::vec3(0.0f);
+  }
 
   /// Compiles and allocates. Throws Error(missingCapability) where `size` is above the driver's limits.
   Absorption(gl::ProgramLibrary& programs, glm::ivec2 size, const Settings& settings)

@@ -20,7 +20,8 @@ using test::SceneBuilder;
 class RadiosityDirect : public test::SharedProgramsTest {
  protected:
   static Image picture(const Scene& scene, const Camera& camera, Component component, RadiosityView::Direct direct,
-                       int size = 48, double unmeasuredIterations = gl::kUnmeasuredIterations, double* largestIterations = nullptr) {
+                       int size = 48, double unmeasuredIterations = gl::kUnmeasuredIterations,
+                       double* largestIterations = nullptr) {
     RenderSettings settings;
     settings.technique = Technique::radiosity;
     settings.component = component;

@@ -1,6 +1,6 @@
-// The longest submission of each raster technique: work items times iterations, as gl/chunks.hpp counts them, not timed.
-// What is cut stays the same bit by bit. Those of path tracing, of radiosity's shadow rays and of hemicubes are in
-// PathTracerTest, RadiosityDirect and Hemicube.
+// The longest submission of each raster technique: work items times iterations, as gl/chunks.hpp counts them, not
+// timed. What is cut stays the same bit by bit. Those of path tracing, of radiosity's shadow rays and of hemicubes are
+// in PathTracerTest, RadiosityDirect and Hemicube.
 #include "gl/chunks.hpp"
 #include "irradiance_cache/light_gather.hpp"
 #include "render/renderer.hpp"
@@ -37,7 +37,8 @@ class Submissions : public test::SharedProgramsTest {
   }
   /// unmeasuredIterations: such that the picture takes many chunks of at least a work group.
   static void expectSameInChunks(const Scene& scene, const RenderSettings& settings, double unmeasuredIterations) {
-    const Drawn whole = drawn(scene, settings, gl::kUnmeasuredIterations), cut = drawn(scene, settings, unmeasuredIterations);
+    const Drawn whole = drawn(scene, settings, gl::kUnmeasuredIterations),
+                cut = drawn(scene, settings, unmeasuredIterations);
     EXPECT_LE(whole.largestIterations, kMost);
     EXPECT_GT(whole.largestIterations, gl::kMostOverUnmeasured * unmeasuredIterations) << "nothing was cut";
     EXPECT_LE(cut.largestIterations, gl::kMostOverUnmeasured * unmeasuredIterations);
@@ -175,11 +176,12 @@ TEST_F(Submissions, NoLaneGathersForLongerThanIsSaid) {
   for (const auto& [depth, layers] : {std::pair(8, 1), {8, 6}, {12, 6}, {13, 1}}) {
     const int top = std::min(depth - 1, LightTree::kTop);
     // Without the texels near by, the way to a leaf and the ray.
-    const double most = LightGather::iterationsOfLane(depth, top, layers) - CACHE_MOST_NEAR - 4.0 * depth - gl::kIterationsOfRay;
+    const double most =
+        LightGather::iterationsOfLane(depth, top, layers) - CACHE_MOST_NEAR - 4.0 * depth - gl::kIterationsOfRay;
     for (int last = CACHE_MOST_OPENING - 3 * depth; last <= CACHE_MOST_OPENING; ++last) {
       // Waits before the last levels, then opens all the way down.
-      const double iterations =
-          iterationsOfWalk(depth, top, layers, [&](int turn, int at) { return turn >= last - depth || at + 4 < depth; });
+      const double iterations = iterationsOfWalk(
+          depth, top, layers, [&](int turn, int at) { return turn >= last - depth || at + 4 < depth; });
       EXPECT_LE(iterations, most) << depth << ", " << layers;
       longest = std::max(longest, iterations / most);
     }

@@ -28,11 +28,11 @@ SceneFeatures plainNeeds() {
   return features;
 }
 
-TEST(SceneNeedsTest, AnEmptySceneNeedsNothing) { EXPECT_EQ(analyse(Scene{}), SceneFeatures{}); }
+TEST(SceneFeaturesTest, AnEmptySceneNeedsNothing) { EXPECT_EQ(analyse(Scene{}), SceneFeatures{}); }
 
-TEST(SceneNeedsTest, APlainSceneNeedsOnlyItsLight) { EXPECT_EQ(analyse(plainScene()), plainNeeds()); }
+TEST(SceneFeaturesTest, APlainSceneNeedsOnlyItsLight) { EXPECT_EQ(analyse(plainScene()), plainNeeds()); }
 
-TEST(SceneNeedsTest, EachFeatureRaisesItsFlagAlone) {
+TEST(SceneFeaturesTest, EachFeatureRaisesItsFlagAlone) {
   struct Case {
     const char* name;
     std::function<void(Scene&)> change;
@@ -69,7 +69,7 @@ TEST(SceneNeedsTest, EachFeatureRaisesItsFlagAlone) {
   }
 }
 
-TEST(SceneNeedsTest, AMapThatMaySayMetalNeedsConductors) {
+TEST(SceneFeaturesTest, AMapThatMaySayMetalNeedsConductors) {
   Scene scene = plainScene();
   scene.materials[0].metalMap = MetalMap{glm::vec3(0.5f), 1.0f, 1.0f, 0};  // its mean may be no metal
   EXPECT_TRUE(analyse(scene).conductors);
@@ -78,7 +78,7 @@ TEST(SceneNeedsTest, AMapThatMaySayMetalNeedsConductors) {
   EXPECT_FALSE(analyse(scene).normalMaps);
 }
 
-TEST(SceneNeedsTest, MaterialsOfNoDrawnMeshDoNotCount) {
+TEST(SceneFeaturesTest, MaterialsOfNoDrawnMeshDoNotCount) {
   Scene scene = plainScene();
   Material& unused = scene.materials[1];
   unused.diffuseTexture = 0;
@@ -93,7 +93,7 @@ TEST(SceneNeedsTest, MaterialsOfNoDrawnMeshDoNotCount) {
   EXPECT_NE(analyse(scene), plainNeeds());
 }
 
-TEST(SceneNeedsTest, NoSunOrADarkSunIsNoLight) {
+TEST(SceneFeaturesTest, NoSunOrADarkSunIsNoLight) {
   Scene scene = plainScene();
   scene.sun->irradiance = glm::vec3(0.0f);
   EXPECT_EQ(analyse(scene), SceneFeatures{});
@@ -101,7 +101,7 @@ TEST(SceneNeedsTest, NoSunOrADarkSunIsNoLight) {
   EXPECT_EQ(analyse(scene), SceneFeatures{});
 }
 
-TEST(SceneNeedsTest, IndirectLightNeedsALightAndAnAlbedo) {
+TEST(SceneFeaturesTest, IndirectLightNeedsALightAndAnAlbedo) {
   Scene black = plainScene();
   for (Material& m : black.materials) m.diffuse = glm::vec3(0.0f);
   EXPECT_FALSE(analyse(black).indirect);
@@ -113,7 +113,7 @@ TEST(SceneNeedsTest, IndirectLightNeedsALightAndAnAlbedo) {
   EXPECT_TRUE(analyse(glowing).indirect);
 }
 
-TEST(SceneNeedsTest, NamesComeInDeclarationOrder) {
+TEST(SceneFeaturesTest, NamesComeInDeclarationOrder) {
   SceneFeatures features;
   features.specular = true;
   const auto named = features.named();

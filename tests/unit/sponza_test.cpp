@@ -65,7 +65,8 @@ TEST(SponzaTest, MaterialsAreReadRight) {
   EXPECT_EQ(materials["bricks"].specular, glm::vec3(0.01f));
   EXPECT_EQ(materials["bricks"].shininess, 10.0f);
   const SceneFeatures features = analyse(scene);
-  EXPECT_TRUE(features.diffuseTextures && features.alphaMasks && features.specular && features.directionalLight && features.indirect);
+  EXPECT_TRUE(features.diffuseTextures && features.alphaMasks && features.specular && features.directionalLight &&
+              features.indirect);
   EXPECT_FALSE(features.emission || features.background);
 }
 

@@ -1,4 +1,4 @@
-#include "walk/paths.hpp"
+#include "shared/paths.hpp"
 
 #include <cmath>
 
