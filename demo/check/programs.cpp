@@ -3,6 +3,8 @@
 #include "check/check.hpp"
 
 #include "bench/bench.hpp"
+#include "gl/lines.hpp"
+#include "gl/overlay.hpp"
 #include "pathtracer/path_tracer.hpp"
 
 #include <fmt/core.h>
@@ -77,6 +79,56 @@ Finding compileMedia(const UnitInput& input) {
   return stopwatch.finding();
 }
 
+/// Programs that no picture of the part has: of other settings, of lamps and haze, and those that inspect a pixel.
+const std::vector<Asked>& variants() {
+  static const std::vector<Asked> all{
+      {"direct-lamps", "", "direct", {"shadow.cascades=3"}},
+      {"rsm-lamps", "", "rsm", {"rsm.interpolate=off"}},
+      {"lpv-lamps", "", "lpv", {"lpv.bounces=2", "lpv.shafts=on", "lpv.glossy=on"}},
+      {"lpv-layered", "", "lpv", {"lpv.fill=layered", "lpv.propagate=layered"}},
+      {"lpv-fixed", "cornell/cornell.json", "lpv", {"lpv.fill=fixed", "lpv.cascades=1"}},
+      {"lpv-published", "", "lpv", {"lpv.lookup=published", "lpv.blocking=both"}},
+      {"gather-lamps", "", "irradiance-cache", {"cache.transport=gather"}},
+      {"cache-lamps", "", "irradiance-cache", {"cache.samples=16", "cache.bounces=1"}},
+      {"radiosity-raster",
+       "",
+       "radiosity",
+       {"radiosity.edge=1", "radiosity.visibility=raster", "radiosity.mapping=log"}},
+      {"radiosity-rays", "", "radiosity", {"radiosity.edge=1", "radiosity.visibility=rays"}},
+      {"radiosity-items", "", "radiosity", {"radiosity.edge=1", "radiosity.visibility=item-buffer"}},
+      {"path-lamps", "", "path", {"path.samples=1"}}};
+  return all;
+}
+
+/// The Cornell box in a haze, with a spot, an omnidirectional lamp and a conductor.
+Scene boxOfEverything() {
+  Scene scene = loadScene(bench::asset("cornell/cornell.json"));
+  const glm::dvec3 middle = scene.bounds.centre();
+  scene.points.push_back({middle, glm::vec3(1.0f)});
+  scene.spots.push_back({middle, {0.0, -1.0, 0.0}, glm::vec3(1.0f), 0.3, 0.6});
+  scene.media.emplace_back().scattering = glm::vec3(0.01f);
+  scene.cameraMedium = static_cast<int>(scene.media.size()) - 1;
+  Material& shiny = scene.materials.front();
+  shiny.specular = glm::vec3(0.5f);
+  shiny.shininess = 50.0f;
+  return scene;
+}
+
+Finding compileVariant(const Asked& asked, const UnitInput& input) {
+  Session session(input);
+  const Stopwatch stopwatch(session.programs);
+  const Scene scene = asked.scene.empty() ? boxOfEverything() : loadScene(bench::asset(asked.scene));
+  const RenderSettings settings = asked.parse({32, 18});
+  Renderer renderer(session.context, session.programs, scene, settings);
+  if (!asked.isPath()) {
+    renderer.render(scene.cameras.front());
+    renderer.ask(session.context, session.programs, scene, scene.cameras.front(), {16, 9});
+  }
+  const gl::Lines lines(session.programs);
+  const gl::Overlay overlay(session.programs);
+  return stopwatch.finding();
+}
+
 }  // namespace
 
 std::vector<Unit> programUnits() {
@@ -85,6 +137,9 @@ std::vector<Unit> programUnits() {
     if (!asked.scene.starts_with("media/"))
       units.push_back(
           {"programs", asked.name, 60.0, [&](const UnitInput& input) { return compileTechnique(asked, input); }});
+  for (const Asked& asked : variants())
+    units.push_back(
+        {"programs", asked.name, 60.0, [&](const UnitInput& input) { return compileVariant(asked, input); }});
   units.push_back({"programs", "media", 90.0, compileMedia});
   return units;
 }

@@ -29,7 +29,7 @@ struct PicturesOptions {
   bool progressive = false;
 };
 
-struct Picture {
+struct SheetPicture {
   std::string label;
   RenderSettings settings;
   Camera camera;
@@ -125,7 +125,7 @@ class LpvPictures {
     Progress progress("bench pictures", static_cast<int>(pictures_.size()), input_.quiet);
     for (std::size_t i = 0; i < pictures_.size(); ++i) {
       if (interrupted()) return false;
-      Picture& picture = pictures_[i];
+      SheetPicture& picture = pictures_[i];
       Renderer renderer(input_.context, input_.programs, input_.scene, picture.settings);
       if (input_.exposure) renderer.setExposure(static_cast<float>(*input_.exposure));
       if (i == single || i == three || i == unblocked || i == blocked) renderer.setExposure(2.0f * renderer.exposure());
@@ -157,7 +157,7 @@ class LpvPictures {
     tile("7.2, 7.7  with indirect light", plain);
     VptSheet result;
     result.tiles = tiles_.size();
-    for (const Picture& picture : pictures_)
+    for (const SheetPicture& picture : pictures_)
       result.json.push_back({{"picture", picture.label}, {"mean", {picture.mean.x, picture.mean.y, picture.mean.z}}});
     result.sheet = contactSheet(
         fmt::format("LPV original, pictures 6.1 to 7.7, {}: {}; three grids of 32^3, 8 iterations, RSM 256, blocking, "
@@ -203,7 +203,7 @@ class LpvPictures {
   }
 
   const LpvPicturesInput& input_;
-  std::vector<Picture> pictures_;
+  std::vector<SheetPicture> pictures_;
   std::size_t rsm128, plain, rsm512, single, three, unblocked, blocked, indirect, direct, flickering, smooth;
   std::map<StagePicture::Kind, Bitmap> map_;  ///< for the first light
   std::vector<Tile> tiles_;

@@ -10,7 +10,7 @@
 namespace lucerna {
 
 namespace {
-constexpr GLuint kListBuffer = 1;  // GL_SHADER_STORAGE_BUFFER
+constexpr GLuint kPixelListBuffer = 1;  // GL_SHADER_STORAGE_BUFFER
 constexpr std::size_t kAtOnce = 1u << 14;  // of CACHE_LANES lanes each, per submission: gl/chunks.hpp
 }  // namespace
 
@@ -31,7 +31,7 @@ Image IrradianceCache::atPixels(int rounds, const std::function<void(const gl::B
     bindRecords();
     scene_.bind();
     records.bindStorage(kRecordsBuffer);
-    list.bindStorage(kListBuffer);
+    list.bindStorage(kPixelListBuffer);
     work.upload(0, kWorkWords * sizeof(GLuint), noWork().data());
     work.bindStorage(kWorkBuffer);
     {

@@ -20,7 +20,7 @@ namespace lucerna {
 namespace {
 
 constexpr GLuint kRecordsBuffer = 0, kListBuffer = 1, kLinksBuffer = 6, kBouncedBuffer = 7;  // storage blocks
-constexpr GLuint kTreeUnit = 7, kSlotsUnit = 8, kLightUnit = 9;
+constexpr GLuint kTreeUnit = 7, kBounceSlotsUnit = 8, kLightUnit = 9;
 constexpr GLuint kPlacesUnit = 13, kMapUnits = 10;  // with rays: the texture atlas has the usual ones
 constexpr std::size_t kLinkBytes = 12;  // of a ray: a point's number and the albedo there
 constexpr int kMostBounces = 64;
@@ -231,7 +231,7 @@ void LightGather::gatherHemisphere(const gl::Program& program, const Targets& ta
   program.set("bounceCells", bounceCells_);
   paths_->bind();
   if (parts_.bounces) {
-    slots_.bind(kSlotsUnit);
+    slots_.bind(kBounceSlotsUnit);
     light_[0].bind(kLightUnit);
     links_.bindStorage(kLinksBuffer);
     places_.bind(kPlacesUnit);

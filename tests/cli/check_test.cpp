@@ -2,6 +2,7 @@
 // the rest goes on; an interrupted check resumes.
 #include "base/files.hpp"
 #include "support/faulty_shaders.hpp"
+#include "support/long_tests.hpp"
 #include "support/subprocess.hpp"
 #include "support/temp_folder.hpp"
 
@@ -11,6 +12,8 @@
 
 #include <filesystem>
 #include <functional>
+#include <regex>
+#include <set>
 #include <string>
 
 namespace lucerna::test {
@@ -81,6 +84,28 @@ TEST_F(Check, MeasurementsEndInTheirTime) {
   EXPECT_GT(row("stages", "direct-cornell-1280x720").at("figures").at("median_ms"), 0.0);
   EXPECT_GT(row("rays", "cornell").at("figures").at("mrays_per_s"), 0.0);
   EXPECT_GT(row("programs", "direct-atrium").at("figures").at("programs").size(), 3u);
+}
+
+// Of the techniques and of the inspection of a pixel: each name that engine/ loads a program by. Minutes on software.
+TEST_F(Check, EveryProgramOfTheEngineIsCompiled) {
+  if (!lucerna::test::longTests()) GTEST_SKIP() << "one of the long tests";
+  EXPECT_EQ(check("--only programs --minutes 30").exitCode, 0);
+  std::set<std::string> compiled;
+  const nlohmann::json whole = report();
+  for (const auto& row : whole.at("rows"))
+    for (const auto& program : row.at("figures").at("programs")) compiled.insert(program.at("name"));
+  // Of the published radiosity program and of the bounds of bench error, which no frame draws.
+  const std::set<std::string> others{"radiosity show", "radiosity show textured", "cache records of pixels",
+                                     "cache paths from cells"};
+  const std::regex load(R"re(load(?:Compute|Raster)\(\s*"([^"]+)")re");
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(LUCERNA_SOURCE_DIR "/engine")) {
+    if (entry.path().extension() != ".cpp") continue;
+    const std::string text = readFileText(entry.path());
+    for (std::sregex_iterator match(text.begin(), text.end(), load), end; match != end; ++match)
+      if (const std::string name = (*match)[1]; !others.contains(name)) {
+        EXPECT_TRUE(compiled.contains(name)) << entry.path() << ": " << name;
+      }
+  }
 }
 
 TEST_F(Check, AWrongReferenceIsAWrongPicture) {
