@@ -8,6 +8,7 @@
 #include "merge.hpp"
 #include "shared/parts.hpp"
 #include "pathtracer/film.hpp"
+#include "shared/shell.hpp"
 
 #include <fmt/core.h>
 #include <fmt/format.h>

@@ -9,6 +9,7 @@
 #include "measure/flip.hpp"
 #include "measure/heat_map.hpp"
 #include "measure/image_errors.hpp"
+#include "shared/shell.hpp"
 
 #include <fmt/core.h>
 

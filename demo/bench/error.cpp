@@ -9,6 +9,7 @@
 #include "bench/error_bench.hpp"
 #include "shared/provenance.hpp"
 #include "shared/offers.hpp"
+#include "shared/shell.hpp"
 
 #include <fmt/core.h>
 #include <fmt/format.h>

@@ -12,6 +12,7 @@
 #include "measure/flip.hpp"
 #include "measure/front.hpp"
 #include "measure/heat_map.hpp"
+#include "shared/shell.hpp"
 
 #include <fmt/core.h>
 

@@ -8,8 +8,7 @@ namespace {
 lucerna::demo::Work addBench(lucerna::demo::Command app) {
   using namespace lucerna::demo;
   Subcommands commands(app);
-  commands.add("tables", "Reproduce an original's published tables: published, measured, ratio", addBenchTables);
-  commands.add("pictures", "Reproduce an original's published pictures on one labelled sheet", addBenchPictures);
+  addOriginals(commands);
   commands.add("rays", "Rays per second of the compute-shader hierarchy, compared with Embree on the same rays",
                addBenchRays);
   commands.add("error", "Error against run time: every technique over a ladder of settings", addBenchError);

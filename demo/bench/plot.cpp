@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "shared/provenance.hpp"
+#include "shared/shell.hpp"
 
 #include <algorithm>
 #include <cmath>

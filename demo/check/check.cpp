@@ -12,6 +12,7 @@
 #include "check/report.hpp"
 #include "gl/draw.hpp"
 #include "shared/offers.hpp"
+#include "shared/shell.hpp"
 
 #include <fmt/core.h>
 #include <unistd.h>

@@ -8,10 +8,7 @@ int main(int argc, char** argv) {
                     [](Command program, Subcommands& commands) {
                       commands.add("bench", descriptionOf("bench"), [](Command bench) {
                         Subcommands originals(bench);
-                        originals.add("tables", "Reproduce an original's published tables: published, measured, ratio",
-                                      addBenchTables);
-                        originals.add("pictures", "Reproduce an original's published pictures on one labelled sheet",
-                                      addBenchPictures);
+                        addOriginals(originals);
                         return originals.work();
                       });
                       commands.add("lab", descriptionOf("lab"), [](Command lab) {

@@ -3,7 +3,14 @@
 #include "base/data.hpp"
 #include "base/error.hpp"
 
-namespace lucerna::demo::bench {
+namespace lucerna::demo {
+
+void addOriginals(Subcommands& commands) {
+  commands.add("tables", "Reproduce an original's published tables: published, measured, ratio", addBenchTables);
+  commands.add("pictures", "Reproduce an original's published pictures on one labelled sheet", addBenchPictures);
+}
+
+namespace bench {
 
 void checkOriginal(const std::string& name) {
   if (name != "lpv" && name != "rad" && name != "vpt")
@@ -14,4 +21,5 @@ std::string asset(const std::string& file) { return (dataFolder() / "assets" / f
 
 std::string sceneOrAtrium(const std::string& scene) { return scene.empty() ? asset("atrium/atrium.json") : scene; }
 
-}  // namespace lucerna::demo::bench
+}  // namespace bench
+}  // namespace lucerna::demo

@@ -12,6 +12,8 @@ namespace lucerna::demo {
 
 Work addBenchTables(Command app);
 Work addBenchPictures(Command app);
+/// `bench tables` and `bench pictures`.
+void addOriginals(Subcommands& commands);
 /// `lab mystery` and `lab museum`.
 void addMuseum(Subcommands& commands);
 

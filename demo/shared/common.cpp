@@ -110,7 +110,10 @@ std::string PictureOptions::impliedTechnique() const {
     if (name != kUsualTechnique) logInfo("{}: using technique {}, the only one that reads it", option, name);
     return std::string(name);
   };
-  if (fidelity != "corrected") return implied("--fidelity " + fidelity, "lpv");
+  if (fidelity != "corrected") {
+    logInfo("--fidelity {}: using technique lpv, as --technique names no other", fidelity);
+    return "lpv";
+  }
   for (const Deviation& deviation : allDeviations())
     if (!deviations.empty() && deviations.front().starts_with(std::string(deviation.name) + "="))
       return implied(deviations.front(), std::string_view(deviation.name).substr(0, deviations.front().find('.')));

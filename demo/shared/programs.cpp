@@ -1,6 +1,7 @@
 #include "shared/programs.hpp"
 
 #include "base/error.hpp"
+#include "shared/shell.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -48,7 +49,8 @@ fs::path beside(const char* program) { return fs::read_symlink("/proc/self/exe")
 std::vector<CommandEntry> treeOf(const char* program) {
   const fs::path file = beside(program);
   if (!fs::exists(file)) return {};
-  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(fmt::format("'{}' tree", file.string()).c_str(), "r"), pclose);
+  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen((bench::shellWord(file.string()) + " tree").c_str(), "r"),
+                                                   pclose);
   std::string text;
   std::array<char, 4096> part{};
   while (pipe) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 namespace lucerna::demo::bench {
 
@@ -10,10 +9,5 @@ namespace lucerna::demo::bench {
 std::string programVersion();
 /// The processor's name and count, from /proc/cpuinfo; "unknown processor" elsewhere.
 std::string cpuName();
-/// A word of a command as the shell needs it: in single quotes if it contains anything but letters, digits and _ - . /
-/// , = : + @.
-std::string shellWord(const std::string& word);
-/// Words joined by spaces.
-std::string shellCommand(const std::vector<std::string>& words);
 
 }  // namespace lucerna::demo::bench

@@ -1,6 +1,7 @@
 #include "walk/state.hpp"
 
 #include "shared/provenance.hpp"
+#include "shared/shell.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -22,10 +22,10 @@ SHARED_BEGIN
 
 #define ASKED_PARTS_BINDING 1
 
-// A contribution to the irradiance at that pixel: from a texel of a reflective shadow map, a cell or a receiver.
+// A contribution to the irradiance at that pixel: from a texel of a reflective shadow map, a cell or a cache record.
 struct AskedPart {
   vec3 irradiance;
-  float weight;   // of a cell or receiver in the lookup
+  float weight;   // of a cell or record in the lookup
   vec3 place;     // where the light comes from, among the frame's positions
   float padding;
   ivec4 number;   // x, y and layer of a texel; x, y, z and cascade of a cell

@@ -1259,7 +1259,7 @@ TEST_F(IrradianceCacheKept, WhatIsBrightBesideTheDarkIsAddedSlowly) {
 
 // In a closed cube every cell of every wall has a record in the coarsest cascades, in view or not, at a point of that
 // wall; the finer ones have those of what is seen.
-TEST_F(IrradianceCacheKept, SurfacesAllAroundHaveReceivers) {
+TEST_F(IrradianceCacheKept, SurfacesAllAroundHaveRecords) {
   const Scene scene = furnace(glm::vec3(0.5f), glm::vec3(1.0f));
   RenderSettings s = settings(1, 16);
   s.cache.cascades.cascades = 3;
@@ -1380,7 +1380,7 @@ TEST_F(IrradianceCacheKept, CascadesAreBlendedEvenly) {
   EXPECT_LT(worst, 1e-3);
 }
 
-TEST_F(IrradianceCacheKept, WithoutRoomReceiversAreLeftOutAndCounted) {
+TEST_F(IrradianceCacheKept, WithoutRoomRecordsAreLeftOutAndCounted) {
   // Triangles that face every way in every cell of a small grid, seen from all sides: more slots are asked for than
   // there is room (24 of a grid's 6 cells^3 by cells^2).
   SceneBuilder builder = test::inEnvironment(1.0f);
