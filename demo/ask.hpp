@@ -1,7 +1,7 @@
 // Answers what lit a pixel, as JSON: for `lucerna render --ask` and the window's panel.
 #pragma once
 
-#include "render/pixel_answer.hpp"
+#include "frame/pixel_answer.hpp"
 
 #include <nlohmann/json.hpp>
 

@@ -7,6 +7,7 @@
 #include "base/files.hpp"
 #include "radiosity/original/rad_file.hpp"
 #include "radiosity/original/rad_scene.hpp"
+#include "radiosity/radiosity_view.hpp"
 #include "radiosity/row_file.hpp"
 #include "radiosity/solution.hpp"
 
@@ -92,7 +93,7 @@ int solveCorrected(const RadiositySolve& options) {
     const auto [setting, value] = parseSet(assignment, &kSolutionCost);
     parseSetting(*setting, all, value, "--set ");
   }
-  RadiositySolutionSettings& settings = all.radiosity.solution;
+  RadiositySolutionSettings& settings = all.of<RadiosityView::Settings>().solution;
   for (const std::string& deviation : options.deviations) applyRadiosityDeviation(settings.deviations, deviation);
   settings.wholeTriangles = rad;
   if (rad) settings.refinements = 0;

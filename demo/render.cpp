@@ -3,13 +3,17 @@
 #include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/files.hpp"
+#include "irradiance_cache/irradiance_cache_frame.hpp"
+#include "radiosity/radiosity_frame.hpp"
+#include "radiosity/radiosity_view.hpp"
+#include "rsm/rsm_frame.hpp"
 #include "shared/commands.hpp"
 #include "gl/draw.hpp"
 #include "shared/offers.hpp"
-#include "render/ask.hpp"
+#include "pathtracer/ask_paths.hpp"
 #include "render_path.hpp"
 #include "scene/scene_file.hpp"
-#include "settings/deviations.hpp"
+#include "render/deviations.hpp"
 
 #include <fmt/core.h>
 
@@ -37,8 +41,8 @@ int ask(const RenderOptions& options) {
     throwBadInput("--ask {}: with path tracing accepts --spp, --bounces and --seed", options.ask);
   RenderSettings settings = options.picture.parse();
   settings.fullFloatTarget = true;
-  if (settings.radiosity.direct == RadiosityView::Direct::automatic)
-    settings.radiosity.direct = RadiosityView::Direct::pixels;
+  if (settings.of<RadiosityView::Settings>().direct == RadiosityView::Direct::automatic)
+    settings.of<RadiosityView::Settings>().direct = RadiosityView::Direct::pixels;
   const glm::ivec2 pixel = parsePixel(options.ask, settings.size);
   const Scene scene = loadScene(options.scene);
   const Camera camera = chooseCamera(scene, options.camera);
@@ -46,13 +50,13 @@ int ask(const RenderOptions& options) {
   const gl::Context context;
   gl::ProgramLibrary programs;
   PixelAnswer answer;
-  if (settings.technique == Technique::path) {
+  if (settings.technique == "path") {
     answer = askPaths(context, programs, scene, camera, tracerSettings(options.picture, path, settings),
-                      path.spp.value_or(static_cast<std::uint32_t>(settings.path.samples)), pixel);
+                      path.spp.value_or(static_cast<std::uint32_t>(settings.of<PathSettings>().samples)), pixel);
   } else {
     Renderer renderer(context, programs, scene, settings);
     renderer.renderToTheEnd(camera);
-    answer = renderer.ask(context, programs, scene, camera, pixel);
+    answer = renderer.ask(programs, camera, pixel);
     renderer.drain();
   }
   answer.checkSum();
@@ -76,8 +80,8 @@ int runRender(RenderOptions options) {
   if (options.output.empty()) throwBadInput("--output is missing: the file for the picture");
   RenderSettings settings = options.picture.parse();
   settings.fullFloatTarget = true;
-  if (settings.radiosity.direct == RadiosityView::Direct::automatic)
-    settings.radiosity.direct = RadiosityView::Direct::pixels;
+  if (settings.of<RadiosityView::Settings>().direct == RadiosityView::Direct::automatic)
+    settings.of<RadiosityView::Settings>().direct = RadiosityView::Direct::pixels;
   if (!isWritableImageName(options.output))
     throwBadInput("-o {}: the extension must be png, hdr, exr or pfm", options.output);
   Scene scene = loadScene(options.scene);
@@ -107,8 +111,8 @@ int runRender(RenderOptions options) {
     fmt::print("{}: {}x{}, {}, {}, mean radiance {:.6g} {:.6g} {:.6g}, {:.3f} s per frame on {}\n", options.output,
                image.width, image.height, options.picture.technique, options.picture.component, mean.x, mean.y, mean.z,
                seconds, context.capabilities().renderer);
-    if (renderer.gather()) fmt::print("{}", gatherLine(*renderer.gather()));
-    if (renderer.irradianceCache()) fmt::print("{}", cacheLine(*renderer.irradianceCache()));
+    if (gatherOf(renderer.technique())) fmt::print("{}", gatherLine(*gatherOf(renderer.technique())));
+    if (cacheOf(renderer.technique())) fmt::print("{}", cacheLine(*cacheOf(renderer.technique())));
     if (options.repeat > 1)
       fmt::print("{}", stagesTable(renderer.timer().statistics(), context.capabilities().renderer));
   }
@@ -126,10 +130,10 @@ int runRender(RenderOptions options) {
   json["mean"] = {mean.x, mean.y, mean.z};
   json["gpu_bytes"] = renderer.gpuBytes();
   json["left_out"] = renderer.leftOut();
-  if (renderer.gather()) json["rsm"] = gatherJson(*renderer.gather());
-  if (renderer.irradianceCache()) json["cache"] = cacheJson(*renderer.irradianceCache());
+  if (gatherOf(renderer.technique())) json["rsm"] = gatherJson(*gatherOf(renderer.technique()));
+  if (cacheOf(renderer.technique())) json["cache"] = cacheJson(*cacheOf(renderer.technique()));
   if (options.repeat > 1) json["stages"] = stagesJson(renderer.timer().statistics());
-  if (const RadiosityView* view = renderer.radiosity()) {
+  if (const RadiosityView* view = radiosityOf(renderer.technique())) {
     const RadiositySolution& s = view->solution();
     json["radiosity"] = {{"patches", s.mesh.patches.size()},
                          {"degenerate", s.mesh.degenerate},

@@ -9,7 +9,7 @@
 #include "pathtracer/film.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "scene/scene_file.hpp"
-#include "settings/deviations.hpp"
+#include "render/deviations.hpp"
 
 #include <fmt/core.h>
 
@@ -108,9 +108,9 @@ PathTracer::Settings tracerSettings(const PictureOptions& picture, const PathOpt
   PathTracer::Settings settings;
   settings.size = shared.size;
   settings.transport = transportOf(shared.component);
-  settings.bounces = path.bounces.value_or(shared.path.scatterings);
-  settings.seed = path.seed.value_or(shared.path.seed);
-  settings.deviations = shared.path.deviations;
+  settings.bounces = path.bounces.value_or(shared.of<PathSettings>().scatterings);
+  settings.seed = path.seed.value_or(shared.of<PathSettings>().seed);
+  settings.deviations = shared.of<PathSettings>().deviations;
   return settings;
 }
 
@@ -153,9 +153,9 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   watchForInterrupt();
 
   // Targets: number of samples, time or error.
-  const std::uint32_t target =
-      part ? part->last - part->first
-           : path.spp.value_or(path.seconds || path.error ? PathTracer::kUnlimited - 1 : shared.path.samples);
+  const std::uint32_t target = part ? part->last - part->first
+                                    : path.spp.value_or(path.seconds || path.error ? PathTracer::kUnlimited - 1
+                                                                                   : shared.of<PathSettings>().samples);
   const auto start = Clock::now();
   const auto elapsed = [&] { return secondsSince(start); };
   Progress progress("samples", static_cast<int>(std::min(target, 1000000000u)), common.quiet || !(path.spp || part));

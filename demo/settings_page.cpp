@@ -1,7 +1,8 @@
 #include "settings_page.hpp"
 
-#include "settings/deviations.hpp"
-#include "settings/settings.hpp"
+#include "render/deviations.hpp"
+#include "render/settings.hpp"
+#include "render/techniques.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -12,18 +13,16 @@ namespace {
 
 std::vector<std::string_view> techniquesOf(const Setting& setting) {
   std::vector<std::string_view> names;
-  for (std::size_t i = 0; i < namesOf(Technique{}).size(); ++i)
-    if (isReadBy(setting, static_cast<Technique>(i))) names.push_back(namesOf(Technique{})[i]);
+  for (const TechniqueEntry& technique : allTechniques())
+    if (readWith(setting, technique.name)) names.push_back(technique.name);
   return names;
 }
 
-/// Transports of the irradiance cache; empty if all read it, or that technique does not.
-std::vector<std::string_view> transportsOf(const Setting& setting) {
-  std::vector<std::string_view> names;
-  for (std::size_t i = 0; i < namesOf(CacheTransport{}).size(); ++i)
-    if (isReadBy(setting, static_cast<CacheTransport>(i))) names.push_back(namesOf(CacheTransport{})[i]);
-  if (names.size() == namesOf(CacheTransport{}).size()) names.clear();
-  return names;
+/// The value without which a technique does not read it: "cache.transport=gather"; empty without one.
+std::string_view conditionOf(const Setting& setting) {
+  for (const std::string_view technique : techniquesOf(setting))
+    if (const std::string_view with = *readWith(setting, technique); !with.empty()) return with;
+  return "";
 }
 
 /// Escapes the characters that would end a table cell.
@@ -34,11 +33,10 @@ std::string cell(std::string_view text) {
 }
 
 std::string readers(const Setting& setting) {
-  const std::vector<std::string_view> techniques = techniquesOf(setting), transports = transportsOf(setting);
-  std::string text =
-      techniques.size() == namesOf(Technique{}).size() ? "all" : fmt::format("{}", fmt::join(techniques, ", "));
-  if (!transports.empty()) text += fmt::format(" (transport {})", fmt::join(transports, ", "));
-  return text;
+  const std::vector<std::string_view> techniques = techniquesOf(setting);
+  const std::string_view with = conditionOf(setting);
+  return (techniques.size() == allTechniques().size() ? "all" : fmt::format("{}", fmt::join(techniques, ", "))) +
+         (with.empty() ? "" : fmt::format(" (with {})", with));
 }
 
 }  // namespace
@@ -46,7 +44,9 @@ std::string readers(const Setting& setting) {
 std::string settingsPage() {
   std::string text =
       "# Settings\n\n"
-      "Made by `lucerna info --settings` from the table in engine/settings/settings.cpp; a test compares them.\n\n"
+      "Made by `lucerna info --settings` from the tables of the techniques (engine/NAME/technique.cpp) and of the "
+      "frame\n"
+      "(engine/render/settings.cpp); a test compares them.\n\n"
       "Set one by `--set KEY=VALUE`, or in a settings file (`--settings FILE`: a JSON object with `technique`,\n"
       "`fidelity`, `deviations` and `settings`). A setting that the technique does not read is a warning. What a\n"
       "change costs: *uniform*, the next frame has it; *rebuild*, programs are compiled and textures allocated anew;\n"
@@ -73,7 +73,7 @@ std::string settingsPage() {
       "\n| Name | | Meaning |\n|---|---|---|\n";
   for (const Deviation& deviation : allDeviations())
     text += fmt::format("| `{}` | {} | {} |\n", deviation.name,
-                        std::string(deviation.inOriginal ? "*" : "") + (deviation.inDemo ? "+" : ""),
+                        std::string(deviation.inOriginal() ? "*" : "") + (deviation.inDemo() ? "+" : ""),
                         cell(deviation.meaning));
   return text;
 }
@@ -94,7 +94,7 @@ nlohmann::ordered_json settingsJson() {
     entry["source"] = setting.source;
     entry["cost"] = nameOf(setting.cost);
     entry["techniques"] = techniquesOf(setting);
-    entry["transports"] = transportsOf(setting);
+    entry["with"] = conditionOf(setting);
     list.push_back(entry);
   }
   return list;

@@ -163,7 +163,7 @@ class Report {
     };
     const Scene scene = loadScene(file);
     RenderSettings usual;
-    usual.technique = Technique::lpv;
+    usual.technique = "lpv";
     applyFidelity(usual, Fidelity::original);
     usual.size = kSheetTile;
     keep("lpv", "Light propagation volumes as published",

@@ -8,7 +8,7 @@
 #include "gl/draw.hpp"
 #include "measure/flip.hpp"
 #include "pathtracer/path_tracer.hpp"
-#include "settings/deviations.hpp"
+#include "render/deviations.hpp"
 
 #include <fmt/core.h>
 
@@ -49,7 +49,7 @@ PathSeries seriesOf(const std::string& fidelity, const std::string& deviation) {
     series.deviations = {deviation + "=on"};
     applyDeviation(settings, series.deviations[0]);
   }
-  series.switches = settings.path.deviations;
+  series.switches = settings.of<PathSettings>().deviations;
   return series;
 }
 

@@ -4,6 +4,7 @@
 #include "bench/error_rows.hpp"
 #include "radiosity/original/coarse_scene.hpp"
 #include "radiosity/original/scene_solution.hpp"
+#include "radiosity/radiosity_view.hpp"
 
 #include <fmt/core.h>
 
@@ -25,7 +26,7 @@ Rung withEdge(Rung rung, double edge) {
 }  // namespace
 
 ErrorRow measurePublished(const ErrorBench& bench, const Rung& asked) {
-  const auto solutionOf = [](const Rung& rung) { return rung.picture.parse().radiosity.solution; };
+  const auto solutionOf = [](const Rung& rung) { return rung.picture.parse().of<RadiosityView::Settings>().solution; };
   PatchSettings patches = solutionOf(asked).patches;
   const bool fits = bench.scene.triangleCount() <= asked.mostPatches &&
                     makePatches(bench.scene, patches).patches.size() <= asked.mostPatches;

@@ -7,6 +7,9 @@
 #include "base/image.hpp"
 #include "base/log.hpp"
 #include "base/statistics.hpp"
+#include "irradiance_cache/irradiance_cache_frame.hpp"
+#include "irradiance_cache/settings.hpp"
+#include "lpv/settings.hpp"
 #include "shared/provenance.hpp"
 #include "gl/draw.hpp"
 #include "measure/flip.hpp"
@@ -361,13 +364,15 @@ ErrorRow measureFloor(const ErrorBench& bench, const Rung& rung) {
   const measure::LightKinds lights = modelOf(rung, bench.references.lights).paths.lights;
   const Scene scene = measure::litBy(bench.scene, lights);
   RenderSettings settings = settingsOf(bench, rung.picture, Component::indirect);
-  if (settings.technique == Technique::lpv) {
-    settings.cache.cascades = settings.lpv.cascades;
-    settings.cache.bounces = settings.lpv.bounces;
+  if (settings.technique == "lpv") {
+    settings.of<IrradianceCacheSettings>().cascades = settings.of<LpvSettings>().cascades;
+    settings.of<IrradianceCacheSettings>().bounces = settings.of<LpvSettings>().bounces;
   }
-  settings.technique = Technique::irradianceCache;
-  settings.cache.transport = rung.floor == Floor::map ? CacheTransport::gather : CacheTransport::rays;
-  settings.cache.samples = settings.cache.rays;  // the records' light is not shown
+  settings.technique = "irradiance-cache";
+  settings.of<IrradianceCacheSettings>().transport =
+      rung.floor == Floor::map ? CacheTransport::gather : CacheTransport::rays;
+  settings.of<IrradianceCacheSettings>().samples =
+      settings.of<IrradianceCacheSettings>().rays;  // the records' light is not shown
   Timed timed;
   auto start = Clock::now();
   Renderer renderer(bench.context, bench.programs, scene, settings);
@@ -376,14 +381,15 @@ ErrorRow measureFloor(const ErrorBench& bench, const Rung& rung) {
   timed.setupMs = msSince(start);
   start = Clock::now();
   const std::clock_t cpuStart = std::clock();
-  const IrradianceCacheFrame* frame = renderer.irradianceCacheFrame();
+  const IrradianceCacheFrame* frame = dynamic_cast<const IrradianceCacheFrame*>(renderer.technique());
   constexpr int kPaths = 2048;
   const Image indirect =
-      !frame ? Image(bench.size.x, bench.size.y)
-             : measure::lit(bench.references.albedo,
-                            rung.floor == Floor::map
-                                ? frame->gatheredAtPixels()
-                                : frame->readFromCells(settings.lpv.cascades, settings.lpv.blendBand, kPaths));
+      !frame
+          ? Image(bench.size.x, bench.size.y)
+          : measure::lit(bench.references.albedo,
+                         rung.floor == Floor::map ? frame->gatheredAtPixels()
+                                                  : frame->readFromCells(settings.of<LpvSettings>().cascades,
+                                                                         settings.of<LpvSettings>().blendBand, kPaths));
   timed.wallMs = {msSince(start)};
   timed.cpuMs = {1e3 * static_cast<double>(std::clock() - cpuStart) / CLOCKS_PER_SEC};
   timed.gpuBytes = renderer.gpuBytes();

@@ -1,7 +1,7 @@
 #include "bench/ladder.hpp"
 
 #include "base/error.hpp"
-#include "settings/deviations.hpp"
+#include "render/deviations.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

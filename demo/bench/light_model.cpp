@@ -1,5 +1,7 @@
 #include "bench/light_model.hpp"
 
+#include "render/techniques.hpp"
+
 #include <fmt/format.h>
 
 namespace lucerna::demo::bench {
@@ -23,30 +25,13 @@ std::string nameOf(const LightPaths& paths) {
 bool showsLights(Transport transport) { return transport == Transport::all || transport == Transport::direct; }
 
 LightKinds directLightsOf(const RenderSettings& settings) {
-  const bool all = settings.technique == Technique::radiosity || settings.technique == Technique::irradianceCache;
-  return all ? LightKinds{} : LightKinds{true, true, false, false};  // else of forward shading: sun and lamps
+  const bool all = techniqueNamed(settings.technique).model(settings).environmentAndEmission;
+  return all ? LightKinds{} : LightKinds{true, true, false, false};  // sun and lamps
 }
 
 LightPaths modelOf(const RenderSettings& settings) {
-  LightPaths model{Transport::all, directLightsOf(settings), 0};
-  switch (settings.technique) {
-    case Technique::direct: model.transport = Transport::direct; break;
-    case Technique::rsm: model.transport = Transport::oneBounceUnoccluded; break;
-    case Technique::lpv:
-      model.transport = settings.lpv.blocking ? Transport::oneBounce : Transport::oneBounceUnoccluded;
-      if (settings.lpv.bounces != 1) model = {Transport::indirect, model.lights, settings.lpv.bounces};
-      break;
-    case Technique::irradianceCache:
-      model.transport =
-          settings.cache.transport == CacheTransport::gather && settings.cache.visibility == GatherVisibility::none
-              ? Transport::oneBounceUnoccluded
-              : Transport::oneBounce;
-      if (settings.cache.bounces != 1) model = {Transport::indirect, model.lights, settings.cache.bounces};
-      break;
-    case Technique::radiosity:
-    case Technique::path: break;
-  }
-  return model;
+  const LightModel model = techniqueNamed(settings.technique).model(settings);
+  return {model.transport, directLightsOf(settings), model.bounces};
 }
 
 }  // namespace lucerna::demo::bench

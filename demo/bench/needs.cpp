@@ -6,6 +6,7 @@
 #include "bench/bench.hpp"
 #include "bench/needs_bench.hpp"
 #include "gl/draw.hpp"
+#include "lpv/settings.hpp"
 #include "measure/neutral.hpp"
 
 #include <fmt/core.h>
@@ -42,7 +43,7 @@ double largestDifference(const Image& a, const Image& b) {
 Scene withEverything(const Scene& scene, const RenderSettings& settings) {
   Scene full = scene;
   // A lamp, however dark, adds the surfaces that it sees to the geometry volume, where it is therefore not neutral.
-  const bool lampsBlock = settings.technique == Technique::lpv && settings.lpv.blocking;
+  const bool lampsBlock = settings.technique == "lpv" && settings.of<LpvSettings>().blocking;
   for (const std::string& need : measure::neutralNeeds())
     if (!(lampsBlock && (need == "spotLights" || need == "pointLights"))) measure::addNeutral(full, need);
   return full;
@@ -77,7 +78,7 @@ NeedsResult measureNeeds(const gl::Context& context, const Scene& scene, const C
     result.maxRadiance =
         std::max({result.maxRadiance, static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)});
   result.scene = scene.name;
-  result.technique = std::string(nameOf(settings.technique));
+  result.technique = std::string(settings.technique);
   return result;
 }
 

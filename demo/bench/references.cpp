@@ -2,6 +2,7 @@
 
 #include "base/clock.hpp"
 #include "base/error.hpp"
+#include "irradiance_cache/irradiance_cache_frame.hpp"
 #include "shared/path_sampler.hpp"
 #include "measure/batches.hpp"
 

@@ -3,6 +3,7 @@
 // ratios that must be 1 up to noise.
 #include "bench/stability.hpp"
 #include "bench/stability_room.hpp"
+#include "irradiance_cache/settings.hpp"
 #include "render/renderer.hpp"
 
 #include <fmt/core.h>
@@ -18,9 +19,9 @@ RenderSettings settingsOf(int bounces = 1, int samples = 256) {
   settings.size = {48, 32};
   settings.fullFloatTarget = true;
   settings.shadow.size = 512;
-  settings.technique = Technique::irradianceCache;
-  settings.cache.bounces = bounces;
-  settings.cache.samples = samples;
+  settings.technique = "irradiance-cache";
+  settings.of<IrradianceCacheSettings>().bounces = bounces;
+  settings.of<IrradianceCacheSettings>().samples = samples;
   return settings;
 }
 
@@ -110,7 +111,7 @@ void addGatheredAlbedo(std::vector<StabilityCase>& cases) {
                        room.albedo = 1.0f - 1e-6f;
                        room.emission = glm::vec3(1.0f);
                        RenderSettings settings = settingsOf(bounces, 64);
-                       settings.cache.transport = CacheTransport::gather;
+                       settings.of<IrradianceCacheSettings>().transport = CacheTransport::gather;
                        const int counted = bounces == kAll ? kMostBounces : bounces;
                        return Measurement{1.0, mean(picture(c, makeRoom(room), settings)) / (counted + 2.0), 0.02};
                      }});
@@ -191,7 +192,7 @@ void addCells(std::vector<StabilityCase>& cases) {
                   const Scene scene = makeRoom(room);
                   RenderSettings settings = settingsOf(2, 256);
                   const double usual = mean(picture(c, scene, settings));
-                  settings.cache.cascades.cellSize = size;
+                  settings.of<IrradianceCacheSettings>().cascades.cellSize = size;
                   // Cells far smaller than the room cover only its part near the camera. Elsewhere there is nothing to
                   // look up, and surfaces show exactly their own emission.
                   const double now = mean(picture(c, scene, settings));

@@ -2,7 +2,10 @@
 // roof, lit by the sun; answers are ratios that must be 1, or exact zeros.
 #include "bench/stability.hpp"
 #include "bench/stability_room.hpp"
+#include "radiosity/radiosity_view.hpp"
 #include "render/renderer.hpp"
+#include "rsm/reflective_shadow_map.hpp"
+#include "rsm/rsm_gather.hpp"
 
 #include <fmt/core.h>
 
@@ -14,7 +17,7 @@ namespace lucerna::demo::bench {
 namespace {
 
 struct PictureView {
-  Technique technique;
+  std::string_view technique;
   Component component = Component::all;
   glm::ivec2 size{48, 32};
   int rsmSize = 128, samples = 400;
@@ -26,15 +29,15 @@ Image picture(const StabilityContext& c, const Room& room, const PictureView& vi
   RenderSettings settings;
   settings.technique = view.technique;
   settings.shadow.size = 512;
-  settings.rsm.size = view.rsmSize;
-  settings.gather.samples = view.samples;
-  settings.gather.radius = view.radius;
-  settings.gather.interpolate = view.interpolate;
+  settings.of<ReflectiveShadowMap::Settings>().size = view.rsmSize;
+  settings.of<RsmGather::Settings>().samples = view.samples;
+  settings.of<RsmGather::Settings>().radius = view.radius;
+  settings.of<RsmGather::Settings>().interpolate = view.interpolate;
   settings.size = view.size;
   settings.component = view.component;
   settings.fullFloatTarget = true;
-  settings.radiosity.solution.patches.longestEdge = 3.0 * room.scale;
-  settings.radiosity.solution.hemicubes.resolution = 32;
+  settings.of<RadiosityView::Settings>().solution.patches.longestEdge = 3.0 * room.scale;
+  settings.of<RadiosityView::Settings>().solution.hemicubes.resolution = 32;
   const Scene scene = makeRoom(room);
   Renderer renderer(c.context, c.programs, scene, settings);
   renderer.render(scene.cameras.front());
@@ -52,9 +55,9 @@ double notFinite(const Image& image) {
   return count;
 }
 
-void addPictureRow(std::vector<StabilityCase>& cases, Technique technique, std::string name, std::string parameter,
-                   std::function<Measurement(const StabilityContext&)> run) {
-  cases.push_back({std::string(nameOf(technique)), std::move(name), std::move(parameter), std::move(run)});
+void addPictureRow(std::vector<StabilityCase>& cases, std::string_view technique, std::string name,
+                   std::string parameter, std::function<Measurement(const StabilityContext&)> run) {
+  cases.push_back({std::string(technique), std::move(name), std::move(parameter), std::move(run)});
 }
 
 void addUnits(std::vector<StabilityCase>& cases, const PictureView& view) {
@@ -67,16 +70,15 @@ void addUnits(std::vector<StabilityCase>& cases, const PictureView& view) {
                     return Measurement{1.0, meanOfPicture(c, room, view) / factor / usual, 1e-3};
                   });
   for (const double scale : {std::exp2(-20), std::exp2(20), 1e-3, 1e6})
-    addPictureRow(
-        cases, view.technique, "mean of a scaled scene, against 1x", fmt::format("scale {:g}", scale),
-        [view, scale](const StabilityContext& c) {
-          Room room;
-          const double usual = meanOfPicture(c, room, view);
-          room.scale = scale;
-          // Powers of two change no rounding; other factors may shift a cell or a texel.
-          return Measurement{1.0, meanOfPicture(c, room, view) / usual,
-                             std::exp2(std::round(std::log2(scale))) == scale ? 1e-5 : 5e-3};
-        });
+    addPictureRow(cases, view.technique, "mean of a scaled scene, against 1x", fmt::format("scale {:g}", scale),
+                  [view, scale](const StabilityContext& c) {
+                    Room room;
+                    const double usual = meanOfPicture(c, room, view);
+                    room.scale = scale;
+                    // Powers of two change no rounding; other factors may shift a cell or a texel.
+                    return Measurement{1.0, meanOfPicture(c, room, view) / usual,
+                                       std::exp2(std::round(std::log2(scale))) == scale ? 1e-5 : 5e-3};
+                  });
   for (const double distance : {1e3, 1e4})
     addPictureRow(cases, view.technique, "mean of a scene far from the origin",
                   fmt::format("{:g} room sides", 0.1 * distance), [view, distance](const StabilityContext& c) {
@@ -139,15 +141,14 @@ void addIndirect(std::vector<StabilityCase>& cases, PictureView view) {
 }
 
 void addRsm(std::vector<StabilityCase>& cases) {
-  PictureView view{Technique::rsm};
+  PictureView view{"rsm"};
   view.component = Component::indirect;
-  addPictureRow(cases, Technique::rsm, "one sample: pixels not finite", "rsm.samples=1",
-                [view](const StabilityContext& c) {
-                  PictureView one = view;
-                  one.samples = 1;
-                  return Measurement{0.0, notFinite(picture(c, {}, one)), 0.0};
-                });
-  addPictureRow(cases, Technique::rsm, "mean of 16384 samples, against 1024", "rsm.samples=16384",
+  addPictureRow(cases, "rsm", "one sample: pixels not finite", "rsm.samples=1", [view](const StabilityContext& c) {
+    PictureView one = view;
+    one.samples = 1;
+    return Measurement{0.0, notFinite(picture(c, {}, one)), 0.0};
+  });
+  addPictureRow(cases, "rsm", "mean of 16384 samples, against 1024", "rsm.samples=16384",
                 [view](const StabilityContext& c) {
                   PictureView usual = view;
                   usual.size = {24, 16}, usual.samples = 1024, usual.interpolate = false;
@@ -155,7 +156,7 @@ void addRsm(std::vector<StabilityCase>& cases) {
                   many.samples = 16384;
                   return Measurement{1.0, meanOfPicture(c, {}, many) / meanOfPicture(c, {}, usual), 0.03};
                 });
-  addPictureRow(cases, Technique::rsm, "reach of half a texel: pixels not finite", "rsm.radius=0.004",
+  addPictureRow(cases, "rsm", "reach of half a texel: pixels not finite", "rsm.radius=0.004",
                 [view](const StabilityContext& c) {
                   PictureView near = view;
                   near.radius = 0.004f;
@@ -166,11 +167,11 @@ void addRsm(std::vector<StabilityCase>& cases) {
 }  // namespace
 
 void addPictureCases(std::vector<StabilityCase>& cases) {
-  for (const Technique technique : {Technique::direct, Technique::rsm, Technique::lpv, Technique::radiosity}) {
+  for (const std::string_view technique : {"direct", "rsm", "lpv", "radiosity"}) {
     const PictureView view{technique};
     addUnits(cases, view);
     addExtremes(cases, view);
-    if (technique == Technique::rsm || technique == Technique::lpv) addIndirect(cases, view);
+    if (technique == "rsm" || technique == "lpv") addIndirect(cases, view);
   }
   addRsm(cases);
 }

@@ -3,8 +3,11 @@
 // match that of the same scene at the origin, or on a small floor.
 #include "bench/stability.hpp"
 #include "bench/stability_room.hpp"
+#include "irradiance_cache/settings.hpp"
 #include "pathtracer/path_tracer.hpp"
+#include "radiosity/radiosity_view.hpp"
 #include "render/renderer.hpp"
+#include "rsm/reflective_shadow_map.hpp"
 
 #include <fmt/core.h>
 
@@ -114,17 +117,18 @@ Image picture(const StabilityContext& c, const Scene& scene, How how, Component 
     return tracer.mean();
   }
   RenderSettings settings;
-  settings.technique = parseName<Technique>(techniqueOf(how), "technique");
+  settings.technique = techniqueOf(how);
   settings.component = component;
   settings.size = kPlacesSize;
   settings.fullFloatTarget = true;
   settings.shadow.size = 512;
-  settings.rsm.size = 128;
-  settings.cache.samples = 64;
-  settings.cache.bounces = 1;
-  settings.radiosity.solution.patches.longestEdge = scene.bounds.extent().x > 100.0 ? 500.0 : 2.5;
-  settings.radiosity.solution.hemicubes.resolution = 32;
-  settings.radiosity.direct = how == How::pixels ? RadiosityView::Direct::pixels : RadiosityView::Direct::patches;
+  settings.of<ReflectiveShadowMap::Settings>().size = 128;
+  settings.of<IrradianceCacheSettings>().samples = 64;
+  settings.of<IrradianceCacheSettings>().bounces = 1;
+  settings.of<RadiosityView::Settings>().solution.patches.longestEdge = scene.bounds.extent().x > 100.0 ? 500.0 : 2.5;
+  settings.of<RadiosityView::Settings>().solution.hemicubes.resolution = 32;
+  settings.of<RadiosityView::Settings>().direct =
+      how == How::pixels ? RadiosityView::Direct::pixels : RadiosityView::Direct::patches;
   Renderer renderer(c.context, c.programs, scene, settings);
   renderer.renderToTheEnd(scene.cameras.front());
   return renderer.readRadiance();

@@ -3,6 +3,7 @@
 
 #include "bench/bench.hpp"
 #include "bench/error_bench.hpp"
+#include "render/techniques.hpp"
 
 #include <fmt/core.h>
 
@@ -15,7 +16,7 @@ namespace {
 /// The least error that each technique reached, and in which time.
 std::string bestOf(const std::vector<bench::ErrorRow>& rows) {
   std::string text;
-  for (const std::string_view technique : namesOf(Technique{})) {
+  for (const std::string& technique : techniqueNames()) {
     const bench::ErrorRow* best = nullptr;
     for (const bench::ErrorRow& row : rows)
       if (row.at("technique") == technique && row.contains("l2") && row.at("l2").is_number() &&

@@ -19,6 +19,7 @@
 #include "bench/bench.hpp"
 #include "gl/draw.hpp"
 #include "measure/image_errors.hpp"
+#include "radiosity/radiosity_view.hpp"
 
 #include <fmt/core.h>
 
@@ -229,8 +230,8 @@ RenderSettings Asked::parse(glm::ivec2 size, const std::vector<std::string>& mor
   RenderSettings result = options.parse();
   result.fullFloatTarget = true;
   result.textures.anisotropy = 1.0f;  // how textures are filtered anisotropically is each driver's own
-  if (result.radiosity.direct == RadiosityView::Direct::automatic)
-    result.radiosity.direct = RadiosityView::Direct::pixels;
+  if (result.of<RadiosityView::Settings>().direct == RadiosityView::Direct::automatic)
+    result.of<RadiosityView::Settings>().direct = RadiosityView::Direct::pixels;
   return result;
 }
 

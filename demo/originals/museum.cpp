@@ -4,11 +4,14 @@
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "base/hash.hpp"
+#include "lpv/settings.hpp"
+#include "radiosity/radiosity_view.hpp"
+#include "render/techniques.hpp"
 #include "shared/html.hpp"
 #include "labs/lab.hpp"
 #include "measure/heat_map.hpp"
 #include "pathtracer/path_tracer.hpp"
-#include "settings/deviations.hpp"
+#include "render/deviations.hpp"
 
 #include <fmt/format.h>
 
@@ -29,7 +32,7 @@ const Scene& box() {
 RenderSettings settingsOf(const std::string& technique, const std::string& deviation) {
   RenderSettings settings;
   applyFidelity(settings, Fidelity::corrected);
-  settings.technique = parseName<Technique>(technique, "technique");
+  settings.technique = techniqueNamed(technique).name;
   settings.component = Component::indirect;
   settings.size = {96, 96};
   settings.fullFloatTarget = true;
@@ -59,7 +62,7 @@ Traced traced(const gl::Context& context, gl::ProgramLibrary& programs, const st
   if (!deviation.empty()) applyDeviation(shared, deviation + "=on");
   PathTracer::Settings settings;
   settings.size = {96, 96};
-  settings.deviations = shared.path.deviations;
+  settings.deviations = shared.of<PathSettings>().deviations;
   settings.nextEvent = lamps;  // a point lamp cannot be found otherwise
   PathTracer tracer(context, programs, scene, settings);
   tracer.setCamera(scene.cameras.front());
@@ -112,8 +115,8 @@ std::string museumHtml(const gl::Context& context, gl::ProgramLibrary& programs,
       if (technique == "path") return traced(context, programs, scene, deviation, true, small ? 8 : 32);
       RenderSettings settings = settingsOf(technique, deviation);
       if (small) {
-        settings.radiosity.solution.patches.longestEdge = 0.1;  // of a box of half a metre
-        settings.lpv.cascades.cells = 16;
+        settings.of<RadiosityView::Settings>().solution.patches.longestEdge = 0.1;  // of a box of half a metre
+        settings.of<LpvSettings>().cascades.cells = 16;
       }
       return Traced{rendered(context, programs, settings)};
     };
@@ -217,12 +220,12 @@ Readings readInstruments(const gl::Context& context, gl::ProgramLibrary& program
     result.readings.push_back(reading);
   };
   read("as it is", [](RenderSettings&) {});
-  read("rsm.size doubled", [](RenderSettings& s) { s.rsm.size *= 2; });
+  read("rsm.size doubled", [](RenderSettings& s) { s.of<ReflectiveShadowMap::Settings>().size *= 2; });
   if (technique == "lpv") {
-    read("one cascade", [](RenderSettings& s) { s.lpv.cascades.cascades = 1; });
-    read("one step", [](RenderSettings& s) { s.lpv.iterations = 1; });
-    read("two steps", [](RenderSettings& s) { s.lpv.iterations = 2; });
-    read("nothing blocks", [](RenderSettings& s) { s.lpv.blocking = false; });
+    read("one cascade", [](RenderSettings& s) { s.of<LpvSettings>().cascades.cascades = 1; });
+    read("one step", [](RenderSettings& s) { s.of<LpvSettings>().iterations = 1; });
+    read("two steps", [](RenderSettings& s) { s.of<LpvSettings>().iterations = 2; });
+    read("nothing blocks", [](RenderSettings& s) { s.of<LpvSettings>().blocking = false; });
   }
   return result;
 }

@@ -1,7 +1,8 @@
 // The published tables and pictures: `lucerna bench tables` and `pictures`; the museum of deviations.
 #pragma once
 
-#include "settings/deviations.hpp"
+#include "lpv/settings.hpp"
+#include "render/deviations.hpp"
 #include "shared/commands.hpp"
 #include "shared/parts.hpp"
 

@@ -9,7 +9,7 @@
 #include "originals/rad.hpp"
 #include "shared/offers.hpp"
 #include "scene/place.hpp"
-#include "settings/deviations.hpp"
+#include "render/deviations.hpp"
 
 #include <fmt/core.h>
 
@@ -99,18 +99,20 @@ class LpvPictures {
  public:
   explicit LpvPictures(const LpvPicturesInput& input) : input_(input) {
     using S = RenderSettings&;
-    rsm128 = add("RSM 128", [](S s) { s.rsm.size = 128; });
+    rsm128 = add("RSM 128", [](S s) { s.of<ReflectiveShadowMap::Settings>().size = 128; });
     plain = add("RSM 256", [](S) {});
-    rsm512 = add("RSM 512", [](S s) { s.rsm.size = 512; });
+    rsm512 = add("RSM 512", [](S s) { s.of<ReflectiveShadowMap::Settings>().size = 512; });
     const Camera &pillar = cameraOf(input.scene, "pillar", input.camera),
                  &curtain = cameraOf(input.scene, "curtain", input.camera);
     // Only indirect light, brightened as in the text: its details drown in sunlight.
     const auto alone = [](S s) { s.component = Component::indirect; };
     single = add(
-        "one 64^3", [&](S s) { alone(s), s.lpv.cascades.cascades = 1, s.lpv.cascades.cells = 64; }, pillar);
+        "one 64^3",
+        [&](S s) { alone(s), s.of<LpvSettings>().cascades.cascades = 1, s.of<LpvSettings>().cascades.cells = 64; },
+        pillar);
     three = add("three 32^3", alone, pillar);
     unblocked = add(
-        "without blocking", [&](S s) { alone(s), s.lpv.blocking = false; }, curtain);
+        "without blocking", [&](S s) { alone(s), s.of<LpvSettings>().blocking = false; }, curtain);
     blocked = add("with blocking", alone, curtain);
     indirect = add("indirect light alone", alone);
     direct = add("without indirect light", [](S s) { s.component = Component::direct; });
@@ -261,7 +263,7 @@ int runPictures(const PicturesOptions& options) {
   checkWritable(options.output);
   bench::checkOriginal(options.original);
   RenderSettings usual;
-  usual.technique = Technique::lpv;
+  usual.technique = "lpv";
   applyFidelity(usual, parseName<Fidelity>(options.fidelity, "--fidelity"));
   if (lowerExtension(options.output) != ".png") throwBadInput("-o {}: the extension must be png", options.output);
   if (options.exposure && !(*options.exposure > 0.0 && *options.exposure <= 1e12))

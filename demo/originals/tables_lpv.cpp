@@ -14,7 +14,7 @@
 #include "lpv/light_propagation_volume.hpp"
 #include "measure/reference.hpp"
 #include "rsm/reflective_shadow_map.hpp"
-#include "settings/deviations.hpp"
+#include "render/deviations.hpp"
 #include "shared/frame.h"
 
 #include <fmt/core.h>
@@ -168,7 +168,7 @@ struct Config {
 LpvSettings settingsOf(const Config& config) {
   RenderSettings settings;
   if (config.published) applyFidelity(settings, Fidelity::thesis);
-  LpvSettings& lpv = settings.lpv;
+  LpvSettings& lpv = settings.of<LpvSettings>();
   if (config.published && config.fill != LpvFill::layered) {
     lpv.tile = 1;
     lpv.deviations.halfGrids = false;  // filling by layered passes needs this off

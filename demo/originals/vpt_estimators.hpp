@@ -1,7 +1,8 @@
 // The estimators that the tables of the VPT original compare: corrected, as published, and a deviation apart (no GL).
 #pragma once
 
-#include "settings/deviations.hpp"
+#include "pathtracer/path_deviations.hpp"
+#include "render/deviations.hpp"
 
 #include <string>
 #include <vector>

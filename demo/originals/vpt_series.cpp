@@ -100,8 +100,8 @@ Scene loadVptScene(const VptPicture& picture, Fidelity fidelity) {
 PathDeviations vptDeviations(const VptPicture& picture, Fidelity fidelity) {
   RenderSettings settings;
   applyFidelity(settings, fidelity);
-  if (!picture.boosted) settings.path.deviations.boostedInteraction = false;
-  return settings.path.deviations;
+  if (!picture.boosted) settings.of<PathSettings>().deviations.boostedInteraction = false;
+  return settings.of<PathSettings>().deviations;
 }
 
 glm::ivec2 vptSize(double scale) {

@@ -4,7 +4,7 @@
 
 #include "originals/originals.hpp"
 #include "pathtracer/path_tracer.hpp"
-#include "settings/deviations.hpp"
+#include "render/deviations.hpp"
 
 #include <string>
 #include <vector>

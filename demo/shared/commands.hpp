@@ -4,8 +4,10 @@
 #include "gl/context.hpp"
 #include "gl/program.hpp"
 #include "host/host.hpp"
+#include "irradiance_cache/irradiance_cache.hpp"
 #include "render/renderer.hpp"
-#include "settings/settings.hpp"
+#include "render/settings.hpp"
+#include "rsm/rsm_gather.hpp"
 #include "shared/command_line.hpp"
 
 #include <nlohmann/json.hpp>

@@ -1,9 +1,10 @@
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "base/log.hpp"
+#include "render/techniques.hpp"
 #include "shared/commands.hpp"
 #include "shared/offers.hpp"
-#include "settings/deviations.hpp"
+#include "render/deviations.hpp"
 #include "shared/settings_file.hpp"
 
 #include <fmt/core.h>
@@ -61,7 +62,7 @@ std::string deviationsHelp() {
   std::string text =
       "\nDeviations (--deviation NAME=on|off; * are on with --fidelity original, which is thesis; + with demo):\n";
   for (const Deviation& deviation : allDeviations())
-    text += fmt::format("{}{} {:<24} {}\n", deviation.inOriginal ? '*' : ' ', deviation.inDemo ? '+' : ' ',
+    text += fmt::format("{}{} {:<24} {}\n", deviation.inOriginal() ? '*' : ' ', deviation.inDemo() ? '+' : ' ',
                         deviation.name, deviation.meaning);
   return text;
 }
@@ -74,7 +75,7 @@ void PictureOptions::declare(Command app) {
       app.addOption("--technique", technique,
                     "direct, rsm, lpv, irradiance-cache, radiosity or path; without it the one that alone reads a "
                     "setting or deviation given, else irradiance-cache"),
-      namesOf(Technique{}));
+      techniqueNames());
   offerNames(app.addOption("--component", component, "all, direct or indirect").showDefault(), namesOf(Component{}));
   offerNames(
       app.addOption("--fidelity", fidelity,
@@ -118,7 +119,7 @@ std::string PictureOptions::impliedTechnique() const {
     if (!deviations.empty() && deviations.front().starts_with(std::string(deviation.name) + "="))
       return implied(deviations.front(), std::string_view(deviation.name).substr(0, deviations.front().find('.')));
   for (const std::string& assignment : settings)
-    if (const auto only = onlyTechnique(*parseSet(assignment).setting)) return implied(assignment, nameOf(*only));
+    if (const auto only = onlyTechnique(*parseSet(assignment).setting)) return implied(assignment, *only);
   return std::string(kUsualTechnique);
 }
 
@@ -138,23 +139,26 @@ nlohmann::ordered_json PictureOptions::toJson() const {
 
 namespace {
 
-/// The transport if none is named: that of the first setting that only one of them reads.
-void chooseTransport(RenderSettings& settings, const std::vector<const Setting*>& given) {
-  if (std::any_of(given.begin(), given.end(), [](const Setting* s) { return s->key == "cache.transport"; })) return;
-  for (const Setting* setting : given)
-    if (const auto transport = onlyTransport(*setting)) {
-      settings.cache.transport = *transport;
-      if (*transport != RenderSettings{}.cache.transport)
-        logInfo("{}: using cache.transport={}, the only one that reads it", setting->key, nameOf(*transport));
-      return;
-    }
+/// Values without which a setting that was given is not read, where no other was asked for (cache.transport): that of
+/// the first.
+void chooseImplied(RenderSettings& settings, const std::vector<const Setting*>& given) {
+  std::vector<const Setting*> chosen = given;
+  for (const Setting* setting : given) {
+    const auto with = readWith(*setting, settings.technique);
+    if (!with || with->empty()) continue;
+    const SettingAssignment implied = parseAssignment(*with);
+    if (std::ranges::find(chosen, implied.setting) != chosen.end()) continue;
+    if (!isRead(*setting, settings)) logInfo("{}: using {}, the only one that reads it", setting->key, *with);
+    parseSetting(*implied.setting, settings, implied.value);
+    chosen.push_back(implied.setting);
+  }
 }
 
 }  // namespace
 
 RenderSettings PictureOptions::parse() const {
   RenderSettings result;
-  result.technique = parseName<Technique>(technique.empty() ? impliedTechnique() : technique, "--technique");
+  result.technique = techniqueNamed(technique.empty() ? impliedTechnique() : technique, "--technique").name;
   result.component = parseName<Component>(component, "--component");
   applyFidelity(result, parseName<Fidelity>(fidelity, "--fidelity"));
   for (const std::string& deviation : deviations) applyDeviation(result, deviation);
@@ -165,15 +169,18 @@ RenderSettings PictureOptions::parse() const {
     parseSetting(*setting, result, value, "--set ");
     given.push_back(setting);
   }
-  if (result.technique == Technique::irradianceCache) chooseTransport(result, given);
+  chooseImplied(result, given);
   std::string unread;
   for (const Setting* setting : given) {
-    if (!isReadBy(*setting, result.technique)) unread += (unread.empty() ? "" : ", ") + std::string(setting->key);
-    else if (!isRead(*setting, result))
-      logWarning("--set {}: cache.transport={} does not use it, {} does", setting->key, nameOf(result.cache.transport),
-                 nameOf(*onlyTransport(*setting)));
+    const auto with = readWith(*setting, result.technique);
+    if (!with) unread += (unread.empty() ? "" : ", ") + std::string(setting->key);
+    else if (!isRead(*setting, result)) {
+      const SettingAssignment needed = parseAssignment(*with);
+      logWarning("--set {}: {}={} does not use it, {} does", setting->key, needed.setting->key,
+                 printSetting(*needed.setting, result), needed.value);
+    }
   }
-  if (!unread.empty()) logWarning("--set {}: technique {} does not use it", unread, nameOf(result.technique));
+  if (!unread.empty()) logWarning("--set {}: technique {} does not use it", unread, result.technique);
   return result;
 }
 

@@ -1,7 +1,7 @@
 // Values that completions offer for an option, stored in the command line's own tree, invisible to help and parsing.
 #pragma once
 
-#include "settings/settings.hpp"
+#include "render/settings.hpp"
 #include "shared/command_line.hpp"
 
 #include <string>

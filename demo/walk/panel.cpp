@@ -3,6 +3,9 @@
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "base/statistics.hpp"
+#include "irradiance_cache/irradiance_cache_frame.hpp"
+#include "lpv/lpv_frame.hpp"
+#include "render/techniques.hpp"
 #include "walk/controls.hpp"
 #include "walk/keys.hpp"
 #include "walk/pixel_section.hpp"
@@ -197,7 +200,7 @@ void showLight(Ui& ui, WalkState& s) {
 
 void showSide(Ui& ui, WalkState& s, int index) {
   SideState& side = s.sides[static_cast<std::size_t>(index)];
-  static constexpr auto kTechniques = namesOf(Technique{});
+  const std::vector<std::string> techniques = techniqueNames();
   static constexpr auto kComponents = namesOf(Component{});
   static constexpr auto kFidelities = namesOf(Fidelity{});
   int shows = static_cast<int>(side.shows);
@@ -211,7 +214,7 @@ void showSide(Ui& ui, WalkState& s, int index) {
         "hdr, exr or pfm in linear radiance, png or jpg taken as sRGB. Enter loads it; a picture dropped on the window "
         "comes here as B.");
   }
-  if (std::string technique = side.options.technique; menu(ui, "technique", technique, kTechniques))
+  if (std::string technique = side.options.technique; menu(ui, "technique", technique, techniques))
     chooseTechnique(side.options, technique);
   menu(ui, "light", side.options.component, kComponents);
   menu(ui, "fidelity", side.options.fidelity, kFidelities);
@@ -317,17 +320,20 @@ void showStages(Ui& ui, WalkState& s) {
       "the colour of their irradiance.");
   if (s.glyphs == Glyphs::none) return;
   const RenderSettings& settings = side.renderer->settings();
-  const int last = (s.glyphs == Glyphs::records ? settings.cache.cascades : settings.lpv.cascades).cascades - 1;
+  const int last = (s.glyphs == Glyphs::records ? settings.of<IrradianceCacheSettings>().cascades
+                                                : settings.of<LpvSettings>().cascades)
+                       .cascades -
+                   1;
   s.glyphCascade = std::clamp(s.glyphCascade, 0, last);
   ImGui::SliderInt("cascade", &s.glyphCascade, 0, last);
   ui.note("cascade");
   ImGui::SliderInt("at most", &s.glyphMost, 10, 5000, "%d", ImGuiSliderFlags_Logarithmic);
   ui.note("at most");
-  if (s.glyphs == Glyphs::records && !side.renderer->irradianceCache())
+  if (s.glyphs == Glyphs::records && !cacheOf(side.renderer->technique()))
     wrapped("Available only for technique irradiance-cache.");
-  else if ((s.glyphs == Glyphs::lobes || s.glyphs == Glyphs::geometry) && !side.renderer->lpv())
+  else if ((s.glyphs == Glyphs::lobes || s.glyphs == Glyphs::geometry) && !volumeOf(side.renderer->technique()))
     wrapped("Available only for technique lpv.");
-  else if (s.glyphs == Glyphs::geometry && !side.renderer->lpv()->geometryVolume())
+  else if (s.glyphs == Glyphs::geometry && !volumeOf(side.renderer->technique())->geometryVolume())
     wrapped("Not available with lpv.blocking=off.");
 }
 

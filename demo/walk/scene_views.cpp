@@ -2,6 +2,11 @@
 
 #include "base/statistics.hpp"
 #include "gl/pass.hpp"
+#include "irradiance_cache/irradiance_cache.hpp"
+#include "irradiance_cache/irradiance_cache_frame.hpp"
+#include "irradiance_cache/settings.hpp"
+#include "lpv/lpv_frame.hpp"
+#include "lpv/settings.hpp"
 #include "scene/place.hpp"
 
 #include <glm/gtc/matrix_inverse.hpp>
@@ -280,8 +285,8 @@ std::vector<gl::Lines::Line> recordsOf(const IrradianceCache& cache, const Rende
 std::vector<gl::Lines::Line> glyphsOf(Glyphs glyphs, const Renderer& renderer, const Scene& scene, const Camera& camera,
                                       int cascade, int most) {
   const RenderSettings& settings = renderer.settings();
-  const LightPropagationVolume* volume = renderer.lpv();
-  if (glyphs == Glyphs::none || (glyphs == Glyphs::records ? !renderer.irradianceCache() : !volume)) return {};
+  const LightPropagationVolume* volume = volumeOf(renderer.technique());
+  if (glyphs == Glyphs::none || (glyphs == Glyphs::records ? !cacheOf(renderer.technique()) : !volume)) return {};
   // Place them as render/lpv_frame.cpp and, but for the blend, render/irradiance_cache_frame.cpp do.
   Bounds bounds = scene.bounds;
   bounds.min -= renderer.origin();
@@ -289,11 +294,12 @@ std::vector<gl::Lines::Line> glyphsOf(Glyphs glyphs, const Renderer& renderer, c
   Camera inFrame = camera;
   inFrame.position -= renderer.origin();
   const std::vector<Cascade> cascades =
-      glyphs == Glyphs::records ? placeCascadesAround(settings.cache.cascades, bounds, inFrame, 1.0)
-                                : placeCascades(settings.lpv.cascades, bounds, inFrame.position, inFrame.direction);
+      glyphs == Glyphs::records
+          ? placeCascadesAround(settings.of<IrradianceCacheSettings>().cascades, bounds, inFrame, 1.0)
+          : placeCascades(settings.of<LpvSettings>().cascades, bounds, inFrame.position, inFrame.direction);
   const int k = std::clamp(cascade, 0, static_cast<int>(cascades.size()) - 1);
   const Cascade& placed = cascades[static_cast<std::size_t>(k)];
-  if (glyphs == Glyphs::records) return recordsOf(*renderer.irradianceCache(), renderer, camera, placed, k, most);
+  if (glyphs == Glyphs::records) return recordsOf(*cacheOf(renderer.technique()), renderer, camera, placed, k, most);
   return glyphs == Glyphs::lobes ? lobesOf(*volume, placed, k, most) : geometryOf(*volume, placed, k, most);
 }
 

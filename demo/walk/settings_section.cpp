@@ -1,7 +1,7 @@
 #include "walk/settings_section.hpp"
 
-#include "settings/deviations.hpp"
-#include "settings/settings.hpp"
+#include "render/deviations.hpp"
+#include "render/settings.hpp"
 #include "walk/controls.hpp"
 
 #include <fmt/format.h>
@@ -144,7 +144,7 @@ void showSettings(Ui& ui, WalkState& s) {
     if (!belongs || !matches(name)) continue;
     bool on = std::find(active.begin(), active.end(), name) != active.end();
     if (checkbox(ui, name.c_str(), on)) assign(side.options.deviations, name, on ? "on" : "off");
-    explain(std::string(deviation.meaning) + (deviation.inOriginal ? "\nOn with fidelity original." : ""));
+    explain(std::string(deviation.meaning) + (deviation.inOriginal() ? "\nOn with fidelity original." : ""));
   }
 }
 

@@ -4,7 +4,7 @@
 
 #include "gl/objects.hpp"
 #include "gl/program.hpp"
-#include "render/stage_picture.hpp"
+#include "frame/stage_picture.hpp"
 #include "scene/scene.hpp"
 
 namespace lucerna::demo {

@@ -7,13 +7,16 @@
 #include "base/files.hpp"
 #include "base/hash.hpp"
 #include "base/log.hpp"
+#include "irradiance_cache/irradiance_cache_frame.hpp"
+#include "pathtracer/path_frame.hpp"
+#include "rsm/rsm_frame.hpp"
 #include "shared/commands.hpp"
 #include "gl/draw.hpp"
 #include "measure/image_errors.hpp"
 #include "measure/reference.hpp"
 #include "shared/offers.hpp"
 #include "scene/key_frames.hpp"
-#include "settings/deviations.hpp"
+#include "render/deviations.hpp"
 #include "walk/keys.hpp"
 #include "walk/options.hpp"
 #include "shared/paths.hpp"
@@ -59,8 +62,8 @@ nlohmann::ordered_json resultJson(const WalkOptions& options, const Host& host, 
   json["stages"] = stagesJson(renderer.timer().statistics());
   json["gpu_bytes"] = renderer.gpuBytes();
   json["left_out"] = renderer.leftOut();
-  if (renderer.gather()) json["rsm"] = gatherJson(*renderer.gather());
-  if (renderer.irradianceCache()) json["cache"] = cacheJson(*renderer.irradianceCache());
+  if (gatherOf(renderer.technique())) json["rsm"] = gatherJson(*gatherOf(renderer.technique()));
+  if (cacheOf(renderer.technique())) json["cache"] = cacheJson(*cacheOf(renderer.technique()));
   return json;
 }
 
@@ -72,7 +75,7 @@ PartFolder framesOf(const WalkOptions& options, const Scene& scene, const Render
     throwBadInput(
         "--flicker: compares a frame with the one before it, which may be another part's: not with --part and "
         "--checkpoint");
-  if (renderer.irradianceCache())
+  if (cacheOf(renderer.technique()))
     throwBadInput(
         "--technique irradiance-cache: a frame goes on from the one before it, which may be another part's: not with "
         "--part and --checkpoint");
@@ -125,7 +128,7 @@ int record(const WalkOptions& options, const Host& host, const gl::Context& cont
       frameSeconds.push_back(kept->at("seconds").get<double>());
     } else {
       const auto start = Clock::now();
-      if (renderer.path()) renderer.renderToTheEnd(cameras[i]);  // all samples: one alone is mere noise
+      if (pathOf(renderer.technique())) renderer.renderToTheEnd(cameras[i]);  // all samples: one alone is mere noise
       else renderer.render(cameras[i]);
       gl::finish();
       frameSeconds.push_back(secondsSince(start));
@@ -152,7 +155,7 @@ int record(const WalkOptions& options, const Host& host, const gl::Context& cont
     fmt::print("{} pictures {}x{} in {}, {:.2f} frames per second\n", done, renderer.size().x, renderer.size().y,
                part.isPart() ? part.folder()->string() : folder.string(), done / seconds);
     fmt::print("{}", stagesTable(renderer.timer().statistics(), context.capabilities().renderer));
-    if (renderer.gather()) fmt::print("{}", gatherLine(*renderer.gather()));
+    if (gatherOf(renderer.technique())) fmt::print("{}", gatherLine(*gatherOf(renderer.technique())));
     if (options.flicker)
       fmt::print(
           "flicker, largest change of a view when its volume is that of the view before: {:.3f} % of the mean, {:.2f} "

@@ -9,6 +9,8 @@
 #include "gl/build_watch.hpp"
 #include "gl/draw.hpp"
 #include "gl/pass.hpp"
+#include "irradiance_cache/irradiance_cache.hpp"
+#include "irradiance_cache/irradiance_cache_frame.hpp"
 #include "walk/ground.hpp"
 #include "walk/panel.hpp"
 #include "shared/paths.hpp"
@@ -491,7 +493,7 @@ void WalkWindow::askPixel(const Compare::Inputs& inputs) {
   try {
     breathe("asking what lit the pixel");
     const gl::BuildWatch watch([this](const std::string& name) { breathe("compiling " + name); });
-    state_.answer = side.renderer->ask(context_, programs_, *state_.scene, state_.camera->camera(), *pixel);
+    state_.answer = side.renderer->ask(programs_, state_.camera->camera(), *pixel);
     state_.answer->condense(kAskedShares);
     state_.answerIsNew = true;
   } catch (const Error& error) { state_.say(error.what()); } catch (const Stopped&) {
@@ -504,7 +506,7 @@ void WalkWindow::drawGlyphs(const Compare::Inputs& inputs) {
   const SideState& side = state_.side();
   if (state_.glyphs == Glyphs::none || !side.renderer || side.shows == Shows::picture) return;
   const Camera& camera = state_.camera->camera();
-  const IrradianceCache* cache = side.renderer->irradianceCache();  // their light changes from frame to frame
+  const IrradianceCache* cache = cacheOf(side.renderer->technique());  // their light changes from frame to frame
   const std::string are = fmt::format("{} {} {} {} {} {} {}", static_cast<int>(state_.glyphs), side.builtAs,
                                       state_.glyphCascade, state_.glyphMost, cameraText(camera), state_.shown,
                                       state_.glyphs == Glyphs::records && cache ? cache->frame() : 0);

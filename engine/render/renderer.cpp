@@ -2,12 +2,12 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "render/techniques.hpp"
 #include "rsm/lamp_choice.hpp"
 #include "scene/place.hpp"
 #include "shared/bindings.h"
-#include "shared/lpv.h"
-#include "shared/sun_cascades.h"
 
+#include <fmt/ranges.h>
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <algorithm>
@@ -18,8 +18,6 @@
 namespace lucerna {
 
 namespace {
-
-constexpr float kShadowNormalOffset = 0.1f;  // texels of the sun's shadow map
 
 double farPlane(const Camera& camera, const Bounds& bounds) {
   double farthest = std::max(glm::length(bounds.extent()), 1e-6);
@@ -40,6 +38,13 @@ glm::dmat4 clipFromWorld(const Camera& camera, const Bounds& bounds, glm::ivec2 
          glm::lookAt(camera.position, camera.position + camera.direction, camera.up);
 }
 
+std::vector<std::string_view> environmentTechniques() {
+  std::vector<std::string_view> names;
+  for (const TechniqueEntry& technique : allTechniques())
+    if (technique.model({}).environmentAndEmission) names.push_back(technique.name);
+  return names;
+}
+
 }  // namespace
 
 Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
@@ -54,52 +59,48 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
       noAttributes_("full screen"),
       surfaceChunks_(settings.unmeasuredIterations) {
   allocateTargets();
-  const Technique technique = settings.technique;
-  if (technique == Technique::path) {
-    path_.emplace(context, programs, scene, settings_);
+  const TechniqueEntry& technique = techniqueNamed(settings.technique);
+  const bool isNeeded = technique.isNeeded(settings_, features_);
+  if (!technique.drawsSurfaces) {
+    technique_ = technique.make(parts(context, programs, scene));
+    geometry_ = dynamic_cast<GeometryTechnique*>(technique_.get());
+    picture_ = dynamic_cast<PictureTechnique*>(technique_.get());
+  }
+  if (picture_) {
     toneMap_ = &programs.loadRaster("tone map", "lib/fullscreen.vert", "forward/tonemap.frag");
     return;
   }
-  if (technique == Technique::radiosity) radiosity_.emplace(context, programs, scene, settings_, origin_);
-  const std::optional<Haze> haze = asksForShafts() ? hazeOf(aboutOrigin(scene)) : std::nullopt;
-  if (asksForShafts() && !haze)
-    logWarning(
-        "lpv.shafts: the scene has no homogeneous medium, within a boundary of bsdf none or about the camera: nothing "
-        "scatters");
-  settings_.rsm.haze = haze.has_value();
-  settings_.textures.boundaries = !haze;
-  gpuScene_.emplace(radiosity_ ? radiosity_->scene() : aboutOrigin(scene), features_, context.capabilities(),
+  if (technique.prepare) technique.prepare(settings_, aboutOrigin(scene));
+  gpuScene_.emplace(geometry_ ? geometry_->geometry() : aboutOrigin(scene), features_, context.capabilities(),
                     settings_.textures);
   if (moved_) moved_->textures.clear();  // they are on the GPU now
   const Scene& drawn = gpuScene_->scene();
   if (scene.sun) sunFrustum_ = fitSunFrustum(drawn, scene.sun->direction);
   spots_ = spotViews(drawn);
   points_ = pointViews(drawn);
-  const bool reflectsLamps = LpvFrame::isNeeded(settings, features_) || RsmFrame::isNeeded(settings, features_) ||
-                             IrradianceCacheFrame::takesMaps(settings, features_);
+  const bool reflectsLamps = technique.readsLightMaps && technique.readsLightMaps(settings_, features_);
   if ((showsDirect() || reflectsLamps) && LocalLights::isNeeded(features_)) {
     keepMostImportant(programs, *gpuScene_, spots_, LocalLights::kMostSpots);
     keepMostImportant(programs, *gpuScene_, points_, LocalLights::kMostPoints);
   }
   if (showsDirect()) makeShadowMaps(programs);
-
-  const FrameParts frame{context, programs,   settings_,   features_, scene,
-                         origin_, *gpuScene_, sunFrustum_, spots_,    points_};
-  if (RsmFrame::isNeeded(settings, features_)) rsm_.emplace(frame, depth_);
-  if (LpvFrame::isNeeded(settings, features_)) lpv_.emplace(frame);
-  if (IrradianceCacheFrame::isNeeded(settings, features_)) cache_.emplace(frame, depth_);
+  if (technique.drawsSurfaces && isNeeded) technique_ = technique.make(parts(context, programs, scene));
   if (EnvironmentView::isNeeded(features_) && settings.component != Component::indirect)
     environmentView_.emplace(programs, scene);
-  if (haze) makeShafts(programs, *haze);
   loadPrograms(programs);
 
-  if (features_.environment && !cache_ && !radiosity_)
-    logWarning("technique {}: the environment lights nothing (path, radiosity and irradiance-cache support it)",
-               nameOf(technique));
+  if (features_.environment && !technique.model(settings_).environmentAndEmission)
+    logWarning("technique {}: the environment lights nothing ({} support it)", technique.name,
+               fmt::join(environmentTechniques(), ", "));
+}
+
+FrameParts Renderer::parts(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene) const {
+  return {context, programs, settings_,  features_, scene,  origin_,         gpuScene_,    sunFrustum_,
+          spots_,  points_,  sunShadow_, radiance_, depth_, radianceTarget_, noAttributes_};
 }
 
 bool Renderer::showsDirect() const {
-  return features_.anyLight() && settings_.component != Component::indirect && !radiosity_;
+  return features_.anyLight() && settings_.component != Component::indirect && !geometry_;
 }
 
 const Scene& Renderer::aboutOrigin(const Scene& scene) {
@@ -107,56 +108,29 @@ const Scene& Renderer::aboutOrigin(const Scene& scene) {
   return moved_ ? *moved_ : moved_.emplace(movedTo(scene, origin_));
 }
 
-bool Renderer::asksForShafts() const { return settings_.technique == Technique::lpv && settings_.lpv.shafts; }
-
-void Renderer::makeShafts(gl::ProgramLibrary& programs, const Haze& haze) {
-  LightShafts::Settings shafts;
-  shafts.steps = settings_.lpv.shaftSteps;
-  shafts.sun = showsSun();
-  shafts.sunCascades = sunCascades_ ? settings_.sunCascades.cascades : 0;
-  shafts.volume = lpv_.has_value();
-  shafts.fullFloat = settings_.fullFloatTarget;
-  shafts.lookup = LightPropagationVolume::lookupFlags(settings_.lpv);
-  shafts.unmeasuredIterations = settings_.unmeasuredIterations;
-  shafts_.emplace(programs, haze, shafts);
-}
-
 void Renderer::makeShadowMaps(gl::ProgramLibrary& programs) {
-  const bool showsSunLight = ShadowMap::isNeeded(features_);
-  const int cascades = settings_.sunCascades.cascades;
-  if (showsSunLight && cascades > 1) {
-    sunCascades_.emplace(programs, *gpuScene_, "sun cascades",
-                         LayeredDepth::Shape{gl::TextureKind::array, settings_.shadow.size, cascades, cascades, true});
-    sunCascadeConstants_ =
-        gl::Buffer("sun cascades", sizeof(shared::SunCascadeConstants), nullptr, gl::Usage::dynamicDraw);
-  } else if (showsSunLight) {
-    shadowMap_.emplace(programs, *gpuScene_, settings_.shadow);
-  }
+  if (SunShadow::isNeeded(features_)) sunShadow_.emplace(programs, *gpuScene_, settings_.shadow);
   if (LocalLights::isNeeded(features_)) localLights_.emplace(programs, *gpuScene_, settings_.lights, spots_, points_);
 }
 
 SurfacePrograms Renderer::surfacePrograms(gl::ProgramLibrary& programs, bool asked) const {
-  if (radiosity_) return radiosity_->loadPrograms(programs, *gpuScene_, asked);
+  if (geometry_) return geometry_->surfacePrograms(asked);
+  const std::string shader = technique_ ? technique_->surfaceShader() : "forward/surface.frag";
+  const gl::ShaderFlags own = technique_ ? technique_->surfaceFlags() : gl::ShaderFlags{};
   const auto loadSurface = [&](const std::string& name, bool masked) {
     gl::ShaderFlags flags = gpuScene_->materialFlags(masked);
     const bool showsRest = settings_.component != Component::indirect;  // specular and emission belong to direct light
-    flags.insert(flags.end(), {{"SUN", showsSun()},
-                               {"SUN_CASCADES", sunCascades_ ? settings_.sunCascades.cascades : 0},
-                               {"HAZE", shafts_.has_value()},
+    flags.insert(flags.end(), {{"SUN", sunShadow_.has_value()},
+                               {"SUN_CASCADES", sunShadow_ ? sunShadow_->cascades() : 0},
                                {"SPOTS", localLights_ ? static_cast<int>(spots_.size()) : 0},
                                {"POINTS", localLights_ ? static_cast<int>(points_.size()) : 0},
                                {"SPECULAR", features_.specular && showsDirect()},
                                {"EMISSION", features_.emission && showsRest},
                                {"ASKED", asked}});
-    gl::ShaderFlags own;  // of the technique: one of the first three below; the others are 0
-    forTechniques(*this, [&](const auto& technique) {
-      if constexpr (requires { technique.shadingFlags(); }) own = technique.shadingFlags();
-    });
-    flags.insert(flags.end(), own.begin(), own.end());
-    for (const char* flag : {"PROPAGATED", "IRRADIANCE_CACHE", "GATHERED", "SHOW_REFUSED", "GLOSSY"})
+    for (const char* flag : {"HAZE", "SHOW_REFUSED", "INDIRECT_SPECULAR"})  // 0 if the technique sets them not
       if (std::none_of(own.begin(), own.end(), [&](const auto& o) { return o.first == flag; }))
         flags.push_back({flag, 0});
-    return &programs.loadRaster(name, "forward/surface.vert", "forward/surface.frag", flags);
+    return &programs.loadRaster(name, "forward/surface.vert", shader, gl::with(flags, own));
   };
   SurfacePrograms result;
   result.opaque = loadSurface("surface opaque", false);
@@ -171,7 +145,7 @@ void Renderer::loadPrograms(gl::ProgramLibrary& programs) {
   if (features_.alphaMasks)
     depthPrograms_.masked = &programs.loadRaster("depth masked", "forward/depth.vert", "forward/depth.frag",
                                                  {{"ALPHA_MASK", 1}, {"FROM_SUN", 0}});
-  toneMap_ = radiosity_ ? radiosity_->loadMapping(programs) : nullptr;
+  toneMap_ = geometry_ ? geometry_->toneMap() : nullptr;
   if (!toneMap_) toneMap_ = &programs.loadRaster("tone map", "lib/fullscreen.vert", "forward/tonemap.frag");
 }
 
@@ -190,10 +164,7 @@ void Renderer::resize(glm::ivec2 size) {
   if (size == settings_.size || size.x <= 0 || size.y <= 0) return;
   settings_.size = size;
   allocateTargets();
-  forTechniques(*this, [&](auto& technique) {
-    if constexpr (requires { technique.resize(depth_); }) technique.resize(depth_);
-  });
-  if (path_) path_->resize(size);
+  if (technique_) technique_->resize();
 }
 
 void Renderer::apply(const RenderSettings& settings) {
@@ -203,32 +174,15 @@ void Renderer::apply(const RenderSettings& settings) {
 
 void Renderer::forget() {
   shadowsMade_ = false;
-  forTechniques(*this, [](auto& technique) {
-    if constexpr (requires { technique.forget(); }) technique.forget();
-  });
+  if (technique_) technique_->forget();
 }
 
 void Renderer::recordShadows(const Camera& camera) {
   const bool areMade = settings_.reuse && shadowsMade_;
-  if (shadowMap_ && !areMade) {
+  if (sunShadow_ && (sunShadow_->followsCamera() || !areMade)) {
     const gl::TimeQuery::Scope stage(timer_, "shadow");
-    shadowMap_->record(*gpuScene_);
-  }
-  if (sunCascades_) {
-    const gl::TimeQuery::Scope stage(timer_, "shadow");
-    const Scene& scene = gpuScene_->scene();
     const double aspect = static_cast<double>(settings_.size.x) / settings_.size.y;
-    shared::SunCascadeConstants constants{};
-    std::vector<LayeredDepth::View> views;
-    for (const SunCascade& cascade : placeSunCascades(settings_.sunCascades, scene, scene.sun->direction, sunFrustum_,
-                                                      camera, aspect, nearPlane(scene.bounds), sunCascades_->size())) {
-      constants.clipFromWorld[views.size()] = glm::mat4(cascade.clipFromWorld);
-      constants.normalOffset[static_cast<int>(views.size())] = kShadowNormalOffset * static_cast<float>(cascade.texel);
-      views.push_back({glm::mat4(cascade.clipFromWorld), glm::vec3(0.0f)});
-    }
-    sunCascadeConstants_.upload(0, sizeof constants, &constants);
-    sunCascadeConstants_.bindUniform(BLOCK_SUN_CASCADES);
-    sunCascades_->record(*gpuScene_, views);
+    sunShadow_->record(*gpuScene_, sunFrustum_, camera, aspect, nearPlane(gpuScene_->scene().bounds));
   }
   if (localLights_ && localLights_->hasSpots() && !areMade) {
     const gl::TimeQuery::Scope stage(timer_, "spot shadows");
@@ -272,8 +226,7 @@ void Renderer::bindFrameConstants(const FrameView& view) {
     frame.sunDirection = glm::vec3(scene.sun->direction);
     frame.sunIrradiance = scene.sun->irradiance;
     frame.shadowNormalOffset =
-        kShadowNormalOffset *
-        static_cast<float>(std::max(sunFrustum_.width, sunFrustum_.height) / settings_.shadow.size);
+        SunShadow::normalOffset(std::max(sunFrustum_.width, sunFrustum_.height) / settings_.shadow.size);
   }
   frame.background = scene.background;
   bindFrameConstants(frame);
@@ -285,24 +238,22 @@ void Renderer::bindFrameConstants(const shared::FrameConstants& constants) {
 }
 
 void Renderer::bindForShading() const {
-  if (shadowMap_) shadowMap_->depth().bind(UNIT_SUN_SHADOW);
-  if (sunCascades_) {
-    sunCascades_->depth().bind(UNIT_SUN_SHADOW);
-    sunCascadeConstants_.bindUniform(BLOCK_SUN_CASCADES);
-  }
+  if (sunShadow_) sunShadow_->bindForShading();
   if (localLights_) localLights_->bindForShading();
-  forTechniques(*this, [](const auto& technique) {
-    if constexpr (requires { technique.bindForShading(); }) technique.bindForShading();
-  });
+  if (technique_) technique_->bindForShading();
+}
+
+// Both sides at once, unless the technique's geometry needs them apart.
+std::span<const GeometryTechnique::Sides> Renderer::sides() const {
+  static constexpr GeometryTechnique::Sides kBoth;
+  return geometry_ ? geometry_->sides() : std::span(&kBoth, 1);
 }
 
 void Renderer::shade(const FrameView& view, bool depthIsDrawn) {
   const gl::TimeQuery::Scope stage(timer_, "shading");
-  using Sides = RadiosityFrame::Sides;
-  const Sides both;
-  const auto all = radiosity_ ? RadiosityFrame::sides() : std::span<const Sides>(&both, 1);
+  const auto all = sides();
   if (!depthIsDrawn)
-    for (const Sides& sides : all) {
+    for (const GeometryTechnique::Sides& sides : all) {
       gl::RasterState state;
       state.depth = gl::Depth::lessWrite;
       state.cull = sides.cull;
@@ -312,7 +263,7 @@ void Renderer::shade(const FrameView& view, bool depthIsDrawn) {
       gpuScene_->draw(depthPrograms_, view.drawn());
     }
   bindForShading();
-  for (const Sides& sides : all) {
+  for (const GeometryTechnique::Sides& sides : all) {
     gl::RasterState state;
     state.depth = gl::Depth::equalReadOnly;
     state.cull = sides.cull;
@@ -321,7 +272,7 @@ void Renderer::shade(const FrameView& view, bool depthIsDrawn) {
     const bool showsBackground = settings_.component != Component::indirect;
     if (&sides == &all.front())
       pass.clearColor(0, glm::vec4(showsBackground ? gpuScene_->scene().background : glm::vec3(0.0f), 1.0f));
-    if (radiosity_) radiosity_->draw(pass, *gpuScene_, surfacePrograms_, view);
+    if (geometry_) geometry_->draw(pass, surfacePrograms_, view);
     else
       surfaceChunks_.forEach(settings_.size, iterationsOfSurface(), 1,
                              [&](const glm::ivec2& corner, const glm::ivec2& size) {
@@ -334,70 +285,46 @@ void Renderer::shade(const FrameView& view, bool depthIsDrawn) {
 // Depth is known, so that a pixel shades one surface: its textures, nine texels of the sun's shadow map, four taps of
 // each lamp's, and a lookup of what a technique adds.
 double Renderer::iterationsOfSurface() const {
-  constexpr double kIterationsOfMaterial = 4.0, kIterationsOfSun = 9.0, kIterationsOfLamp = 4.0,
-                   kIterationsOfIndirect = 24.0;
-  const int suns = sunCascades_ ? settings_.sunCascades.cascades : static_cast<int>(shadowMap_.has_value());
+  constexpr double kIterationsOfMaterial = 4.0, kIterationsOfSun = 9.0, kIterationsOfLamp = 4.0;
+  const int suns = sunShadow_ ? std::max(sunShadow_->cascades(), 1) : 0;
   const double lamps = localLights_ ? static_cast<double>(spots_.size() + points_.size()) : 0.0;
-  constexpr double kIterationsOfCell = 8.0;
-  const double glossy =
-      lpv_ && lpv_->isGlossy() ? LPV_GLOSSY_RAYS * kIterationsOfCell * settings_.lpv.glossySteps : 0.0;
   return kIterationsOfMaterial + kIterationsOfSun * suns + kIterationsOfLamp * lamps +
-         (lpv_ || cache_ ? kIterationsOfIndirect : 0.0) + glossy;
+         (technique_ ? technique_->iterationsOfPixel() : 0.0);
 }
 
 double Renderer::largestIterations() const {
-  double largest = std::max(surfaceChunks_.largestIterations(), shafts_ ? shafts_->largestIterations() : 0.0);
-  forTechniques(*this, [&](const auto& technique) {
-    if constexpr (requires { technique.largestIterations(); })
-      largest = std::max(largest, technique.largestIterations());
-  });
-  return largest;
-}
-
-void Renderer::recordShafts(const FrameView& view) {
-  const gl::TimeQuery::Scope stage(timer_, "light shafts");
-  if (shadowMap_) shadowMap_->depth().bind(UNIT_SUN_SHADOW);
-  if (sunCascades_) sunCascades_->depth().bind(UNIT_SUN_SHADOW);
-  if (lpv_) lpv_->bindForShading();
-  shafts_->record(radiance_, depth_, view.clip);
+  return std::max(surfaceChunks_.largestIterations(), technique_ ? technique_->largestIterations() : 0.0);
 }
 
 void Renderer::render(const Camera& camera, const Camera& volumeCamera) { renderFrame(camera, volumeCamera, {}); }
 
 void Renderer::renderToTheEnd(const Camera& camera) {
   renderFrame(camera, camera, {true, false});
-  if (!cache_) return;
-  cache_->collect(true);
-  const IrradianceCache& cache = cache_->cache();
-  for (std::size_t frames = 0; cache.counts().waiting > 0; ++frames) {
-    if (frames > cache.mostFrames())
-      throw Error(ErrorKind::fault, fmt::format("internal error: after {} frames {} records of {} still lack light",
-                                                frames, cache.counts().waiting, cache.counts().records));
+  if (!technique_) return;
+  technique_->collect(true);
+  for (std::size_t frames = 0; technique_->lacksLight(frames); ++frames) {
     renderFrame(camera, camera, {false, false});
-    cache_->collect(true);
+    technique_->collect(true);
   }
 }
 
 void Renderer::renderFrame(const Camera& camera, const Camera& volumeCamera, FrameEffort effort) {
-  if (path_) {
-    path_->record(timer_, camera, radianceTarget_, noAttributes_, effort.wholePicture);
-    shared::FrameConstants constants{};  // set after the path tracer's own constants, which share the binding
+  if (picture_) {
+    picture_->recordPicture(timer_, camera, effort);
+    shared::FrameConstants constants{};  // set after the technique's own constants, which share the binding
     constants.exposure = exposure_;
     bindFrameConstants(constants);
   } else {
     const FrameView view = viewOf(camera, volumeCamera);
     bindFrameConstants(view);
-    if (shafts_) shafts_->bind();
     recordShadows(view.camera);
-    if (rsm_) rsm_->record(timer_, view);
-    const bool depthIsDrawn = (cache_ && cache_->record(timer_, view, effort)) || rsm_;
-    if (lpv_) lpv_->record(timer_, view);
+    const bool depthIsDrawn = technique_ && technique_->record(timer_, view, effort);
     shade(view, depthIsDrawn);
     if (environmentView_) {
       const gl::TimeQuery::Scope stage(timer_, "environment");
       environmentView_->record(radianceTarget_, noAttributes_, view.camera, settings_.size);
     }
-    if (shafts_) recordShafts(view);
+    if (technique_) technique_->addToPicture(timer_, view);
   }
   {
     const gl::TimeQuery::Scope stage(timer_, "tone mapping");
@@ -407,7 +334,7 @@ void Renderer::renderFrame(const Camera& camera, const Camera& volumeCamera, Fra
     gl::drawFullScreen(noAttributes_);
   }
   timer_.collect();
-  if (rsm_) rsm_->collect();
+  if (technique_) technique_->collect(false);
   gl::throwIfReset();
   // Checked occasionally: glGetError stalls drivers with their own threads. Readers of a result check again.
   constexpr std::uint64_t kFramesBetweenLooks = 64;
@@ -416,8 +343,7 @@ void Renderer::renderFrame(const Camera& camera, const Camera& volumeCamera, Fra
 
 void Renderer::drain() {
   timer_.drain();
-  if (rsm_) rsm_->collect(true);
-  if (cache_) cache_->collect(true);
+  if (technique_) technique_->collect(true);
 }
 
 Image Renderer::readRadiance() const {
@@ -450,23 +376,20 @@ Bitmap Renderer::readDisplay() const {
 std::size_t Renderer::gpuBytes() const {
   std::size_t bytes = frameConstants_.bytes() + radiance_.bytes() + depth_.bytes() + display_.bytes();
   if (gpuScene_) bytes += gpuScene_->gpuBytes();
-  if (shadowMap_) bytes += shadowMap_->gpuBytes();
-  if (sunCascades_) bytes += sunCascades_->gpuBytes() + sunCascadeConstants_.bytes();
+  if (sunShadow_) bytes += sunShadow_->gpuBytes();
   if (localLights_) bytes += localLights_->gpuBytes();
-  forTechniques(*this, [&](const auto& technique) { bytes += technique.gpuBytes(); });
+  if (technique_) bytes += technique_->gpuBytes();
   if (environmentView_) bytes += environmentView_->gpuBytes();
-  if (shafts_) bytes += shafts_->gpuBytes();
   return bytes;
 }
 
 std::vector<StagePicture> Renderer::stagePictures() const {
   std::vector<StagePicture> pictures;
-  if (shadowMap_) pictures.push_back({StagePicture::Kind::depth, "shadow map", &shadowMap_->depth()});
-  if (sunCascades_) pictures.push_back({StagePicture::Kind::depth, "sun cascades", &sunCascades_->depth()});
-  forTechniques(*this, [&](const auto& technique) {
-    if constexpr (requires { technique.addStagePictures(pictures); }) technique.addStagePictures(pictures);
-  });
-  if (!path_) pictures.push_back({StagePicture::Kind::depth, "depth", &depth_});
+  if (sunShadow_)
+    pictures.push_back(
+        {StagePicture::Kind::depth, sunShadow_->followsCamera() ? "sun cascades" : "shadow map", &sunShadow_->depth()});
+  if (technique_) technique_->addStagePictures(pictures);
+  if (gpuScene_) pictures.push_back({StagePicture::Kind::depth, "depth", &depth_});
   return pictures;
 }
 
@@ -474,23 +397,21 @@ std::vector<std::string> Renderer::leftOut() const {
   std::vector<std::string> names;
   for (const auto& [name, needed] : features_.named())
     if (!needed) names.push_back(name);
-  const bool hasMaps = rsm_ || (lpv_ && lpv_->hasMaps()) || (cache_ && cache_->hasMaps());
-  const std::pair<const char*, bool> stages[] = {{"shadow map", showsSun()},
-                                                 {"sun cascades", sunCascades_.has_value()},
+  const std::pair<const char*, bool> stages[] = {{"shadow map", sunShadow_.has_value()},
+                                                 {"sun cascades", sunShadow_ && sunShadow_->followsCamera()},
                                                  {"spot shadow maps", localLights_ && localLights_->hasSpots()},
                                                  {"point shadow maps", localLights_ && localLights_->hasPoints()},
-                                                 {"reflective shadow map", hasMaps},
-                                                 {"environment behind surfaces", environmentView_.has_value()},
-                                                 {"rsm gather", rsm_.has_value()},
-                                                 {"radiosity", radiosity_.has_value()},
-                                                 {"shadow rays", radiosity_ && radiosity_->hasShadowRays()},
-                                                 {"irradiance cache", cache_.has_value()},
-                                                 {"light propagation volume", lpv_.has_value()},
-                                                 {"light shafts", shafts_.has_value()},
-                                                 {"glossy reflection", lpv_ && lpv_->isGlossy()}};
+                                                 {"environment behind surfaces", environmentView_.has_value()}};
   for (const auto& [name, there] : stages)
     if (!there) names.emplace_back(name);
-  if (lpv_) lpv_->addLeftOut(names);
+  // Stages of techniques; some share one.
+  const TechniqueEntry& own = techniqueNamed(settings_.technique);
+  for (const TechniqueEntry& technique : allTechniques())
+    for (const std::string_view stage : technique.stages) {
+      const bool isOwn = technique_ && std::ranges::find(own.stages, stage) != own.stages.end();
+      if (!isOwn && std::ranges::find(names, stage) == names.end()) names.emplace_back(stage);
+    }
+  if (technique_) technique_->addLeftOut(names);
   return names;
 }
 

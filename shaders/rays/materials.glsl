@@ -93,7 +93,7 @@ Surface surfaceAt(uint triangle, vec2 barycentrics, vec3 direction) {
                   barycentrics.x * uintBitsToFloat(triangleData[n + 1u].xyz) +
                   barycentrics.y * uintBitsToFloat(triangleData[n + 2u].xyz);
   float length2 = dot(smoothed, smoothed);
-  // Flipped by the side of the face alone, as in forward/surface.frag; opposite normals at the corners may cancel.
+  // Flipped by the side of the face alone, as in forward/surface.glsl; opposite normals at the corners may cancel.
   surface.normal =
       length2 > 1e-12 ? (surface.front ? smoothed : -smoothed) * inversesqrt(length2) : surface.geometricNormal;
 #else

@@ -99,7 +99,7 @@ TEST_F(Ask, SharesAddUpToThePixelOfPaths) {
 // Parts that do not add up to the pixel are not an answer.
 TEST_F(Ask, PartsThatDoNotAddUpAreAnError) {
   const FaultyShaders shaders;
-  shaders.plant("forward/surface.frag", "record(term, vec4(radiance, 0.0));",
+  shaders.plant("forward/surface.glsl", "record(term, vec4(radiance, 0.0));",
                 "record(term, vec4(1.1 * radiance, 0.0));");
   const RunResult result =
       lucerna::test::run("LUCERNA_SHADERS='" + shaders.path().string() + "' '" LUCERNA_BINARY "' render '" + kCornell +

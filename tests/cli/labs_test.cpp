@@ -2,7 +2,7 @@
 // the READMEs.
 #include "base/files.hpp"
 #include "base/image.hpp"
-#include "settings/deviations.hpp"
+#include "render/deviations.hpp"
 #include "support/long_tests.hpp"
 #include "support/subprocess.hpp"
 #include "support/temp_folder.hpp"

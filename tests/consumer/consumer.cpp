@@ -26,10 +26,10 @@ void draw(const std::filesystem::path& sceneFile, const std::filesystem::path& o
   lucerna::gl::ProgramLibrary programs;  // the installed shaders
 
   lucerna::RenderSettings settings;
-  settings.technique = lucerna::Technique::lpv;
+  settings.technique = lucerna::"lpv";
   settings.size = {96, 64};
   settings.fullFloatTarget = true;
-  settings.lpv.cascades.cells = 16;
+  settings.of<LpvSettings>().cascades.cells = 16;
   lucerna::Renderer renderer(context, programs, scene, settings);
   renderer.render(scene.cameras.front());
   renderer.drain();

@@ -1,108 +1,94 @@
-// An example of a technique and its test, compiled and run: CONTRIBUTING.md walks through it.
-//
-// Absorption dims what the camera sees by the medium in between: L = L_surface exp(-sigma d), d the distance to the
-// surface [Chandrasekhar1960, Beer-Lambert law]. In: radiance and depth of a frame. Out: radiance.
-#include "gl/pass.hpp"
-#include "gl/time_query.hpp"
-#include "scene/features.hpp"
+// CONTRIBUTING.md's example of a technique is in the frame: added, rendered against its known answer, inspected, left
+// out where nothing needs it, and removed again.
+#include "base/angles.hpp"
+#include "base/error.hpp"
+#include "render/renderer.hpp"
+#include "render/settings.hpp"
+#include "render/techniques.hpp"
+#include "support/faulty_shaders.hpp"
 #include "support/gl_fixture.hpp"
+#include "support/small_scenes.hpp"
+#include "support/temp_folder.hpp"
 
-#include <glm/gtc/matrix_transform.hpp>
+#include <algorithm>
+#include <filesystem>
 
-#include <cmath>
+namespace lucerna {
 
-namespace lucerna::test {
-namespace {
-
-class Absorption {
- public:
-  struct Settings {
-    glm::vec3 coefficient{0.0f};  ///< sigma_a, 1 / scene unit
-  };
-  struct Inputs {
-    const gl::Texture& radiance;  ///< RGBA, scene units
-    const gl::Texture& depth;  ///< of the same size, 0 to 1
-    glm::mat4 clipFromView;  ///< perspective
-  };
-  struct Outputs {
-    const gl::Texture& radiance;  ///< RGBA32F
-  };
-
-  /// What is not needed is not built: the frame keeps a std::optional<Absorption>.
-  static bool isNeeded(const SceneFeatures&, const Settings& settings) {
-    return settings.coefficient != glm::vec3(0.0f);
-  }
-
-  /// Compiles and allocates. Throws Error(missingCapability) where `size` is above the driver's limits.
-  Absorption(gl::ProgramLibrary& programs, glm::ivec2 size, const Settings& settings)
-      : settings_(settings),
-        program_(&programs.loadRaster("absorption", "fullscreen.vert", "example_technique.frag")),
-        radiance_("absorption radiance", gl::Format::rgba32f, size) {
-    const gl::Texture* targets[] = {&radiance_};
-    target_ = gl::Framebuffer("absorption", targets);
-  }
-
-  /// One pass: compiles and allocates nothing.
-  void record(const Inputs& inputs, gl::TimeQuery& timer) {
-    const gl::TimeQuery::Scope stage(timer, "absorption");
-    const gl::RasterPass pass("absorption", target_, {});
-    program_->use();
-    program_->set("viewFromClip", glm::inverse(inputs.clipFromView));
-    program_->set("coefficient", settings_.coefficient);
-    inputs.radiance.bind(0);
-    inputs.depth.bind(1);
-    gl::drawFullScreen(noAttributes_);
-  }
-
-  Outputs outputs() const { return {radiance_}; }
-  std::size_t gpuBytes() const { return radiance_.bytes(); }
-
- private:
-  Settings settings_;
-  const gl::Program* program_;
-  gl::Texture radiance_;
-  gl::Framebuffer target_;
-  gl::VertexArray noAttributes_{"absorption"};
-};
-
-class ExampleTechnique : public GlTest {};
-
-// The known answer: each pixel's distance from its depth, in double precision.
-TEST_F(ExampleTechnique, DimsByTheDistanceToTheSurface) {
-  constexpr int kSize = 8;
-  constexpr double kFar = 20.0, kNear = 0.5, kDistance = 4.0;  // a wall at this depth in front of the camera
-  const glm::dmat4 clipFromView = glm::perspective(1.0, 1.0, kNear, kFar);
-  const glm::dvec4 wall = clipFromView * glm::dvec4(0.0, 0.0, -kDistance, 1.0);
-  const std::vector<float> depths(kSize * kSize, static_cast<float>(0.5 + 0.5 * wall.z / wall.w));
-  const std::vector<glm::vec4> light(kSize * kSize, glm::vec4(3.0f, 2.0f, 1.0f, 1.0f));
-
-  gl::Texture radiance("radiance", gl::Format::rgba32f, glm::ivec2(kSize)),
-      depth("depth", gl::Format::r32f, glm::ivec2(kSize));
-  radiance.upload(gl::Texels::rgbaFloat, light.data());
-  depth.upload(gl::Texels::redFloat, depths.data());
-
-  gl::ProgramLibrary examples(std::filesystem::path(LUCERNA_SOURCE_DIR) / "tests/gl/example_technique");
-  gl::TimeQuery timer(false);
-  const glm::dvec3 coefficient(0.1, 0.2, 0.4);
-  Absorption absorption(examples, glm::ivec2(kSize), {glm::vec3(coefficient)});
-  absorption.record({radiance, depth, glm::mat4(clipFromView)}, timer);
-
-  const std::vector<glm::vec4> result = absorption.outputs().radiance.readRgba();
-  for (int i = 0; i < kSize * kSize; ++i) {
-    const glm::dvec2 ndc = (glm::dvec2(i % kSize, i / kSize) + 0.5) / (0.5 * kSize) - 1.0;
-    const double distance = kDistance * std::sqrt(1.0 + std::pow(std::tan(0.5), 2) * glm::dot(ndc, ndc));
-    for (int c = 0; c < 3; ++c) {
-      const double expected = light[0][c] * std::exp(-coefficient[c] * distance);
-      EXPECT_NEAR(result[static_cast<std::size_t>(i)][c], expected, 1e-4 * expected) << i << ", channel " << c;
-    }
-  }
-  EXPECT_EQ(absorption.gpuBytes(), kSize * kSize * sizeof(glm::vec4));
+namespace ambient {
+TechniqueEntry technique();
 }
 
-TEST_F(ExampleTechnique, IsNotNeededWithoutAMedium) {
-  EXPECT_FALSE(Absorption::isNeeded(SceneFeatures{}, {}));
-  EXPECT_TRUE(Absorption::isNeeded(SceneFeatures{}, {glm::vec3(0.1f)}));
+namespace test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The project's shaders with those of the example, as in a tree that has its folders.
+class ExampleTechnique : public GlTest {
+ protected:
+  ExampleTechnique() {
+    fs::copy(LUCERNA_SOURCE_DIR "/tests/gl/example_technique/shaders", shaders_.path(), fs::copy_options::recursive);
+  }
+  static RenderSettings settings(Component component) {
+    RenderSettings s;
+    s.technique = "ambient";
+    s.component = component;
+    s.size = {32, 24};
+    s.fullFloatTarget = true;
+    parseSetting(*findSetting("ambient.irradiance"), s, "2.5");
+    return s;
+  }
+  FaultyShaders shaders_;
+};
+
+TEST_F(ExampleTechnique, IsAddedAndAddsItsLightToEverySurface) {
+  const AddedTechnique added(ambient::technique());
+  gl::ProgramLibrary programs(shaders_.path());
+  const Scene scene = openBox();
+  Renderer renderer(context(), programs, scene, settings(Component::all)),
+      without(context(), programs, scene, settings(Component::direct));
+  renderer.render(openBoxCamera());
+  without.render(openBoxCamera());
+  const Image all = renderer.readRadiance(), direct = without.readRadiance();
+  for (const glm::ivec2& pixel : {glm::ivec2(4, 4), glm::ivec2(16, 12), glm::ivec2(28, 20)}) {
+    const PixelAnswer answer = renderer.ask(programs, openBoxCamera(), pixel);
+    ASSERT_TRUE(answer.surface);
+    const glm::dvec3 expected = answer.surface->albedo / kPi * 2.5;
+    for (int c = 0; c < 3; ++c)
+      EXPECT_NEAR(all.at(pixel.x, pixel.y)[c] - direct.at(pixel.x, pixel.y)[c], expected[c], 1e-5 * expected[c] + 1e-6)
+          << pixel.x << ", " << pixel.y;
+    EXPECT_NO_THROW(answer.checkSum());
+  }
+}
+
+TEST_F(ExampleTechnique, IsLeftOutWhereNothingNeedsIt) {
+  const AddedTechnique added(ambient::technique());
+  gl::ProgramLibrary programs(shaders_.path());
+  const Scene scene = openBox();
+  const Renderer with(context(), programs, scene, settings(Component::all)),
+      without(context(), programs, scene, settings(Component::direct));
+  const auto isLeftOut = [](const Renderer& renderer) {
+    return std::ranges::count(renderer.leftOut(), "constant ambient light") == 1;
+  };
+  EXPECT_FALSE(isLeftOut(with));
+  EXPECT_TRUE(isLeftOut(without));
+  EXPECT_EQ(without.technique(), nullptr);
+  EXPECT_EQ(with.gpuBytes() - without.gpuBytes(), sizeof(glm::vec4));
+}
+
+TEST_F(ExampleTechnique, IsGoneOnceItIsRemoved) {
+  {
+    const AddedTechnique added(ambient::technique());
+    EXPECT_EQ(techniqueNames().back(), "ambient");
+    EXPECT_NE(findSetting("ambient.irradiance"), nullptr);
+    EXPECT_EQ(onlyTechnique(*findSetting("ambient.irradiance")), "ambient");
+  }
+  EXPECT_EQ(std::ranges::count(techniqueNames(), "ambient"), 0);
+  EXPECT_EQ(findSetting("ambient.irradiance"), nullptr);
+  EXPECT_THROW(techniqueNamed("ambient"), Error);
 }
 
 }  // namespace
-}  // namespace lucerna::test
+}  // namespace test
+}  // namespace lucerna

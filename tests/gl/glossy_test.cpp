@@ -2,6 +2,8 @@
 // double-precision twin and closed forms, and pictures against the path tracer.
 #include "cascades/cascades.hpp"
 #include "lpv/glossy_lobes.hpp"
+#include "lpv/light_propagation_volume.hpp"
+#include "lpv/settings.hpp"
 #include "shared/lpv.h"
 #include "pathtracer/path_tracer.hpp"
 #include "render/renderer.hpp"
@@ -349,11 +351,11 @@ constexpr glm::ivec2 kGlossySize{48, 32};
 
 RenderSettings glossySettings() {
   RenderSettings settings;
-  settings.technique = Technique::lpv;
+  settings.technique = "lpv";
   settings.component = Component::indirect;
   settings.size = kGlossySize;
   settings.fullFloatTarget = true;
-  settings.lpv.glossy = true;
+  settings.of<LpvSettings>().glossy = true;
   settings.shadow.size = 512;
   return settings;
 }
@@ -372,7 +374,7 @@ TEST_F(GlossyTest, AWallReflectsAboutWhatPathsDo) {
     const Scene scene = boxWithWall(alpha);
     RenderSettings settings = glossySettings();
     const auto with = [&](bool glossy) {
-      settings.lpv.glossy = glossy;
+      settings.of<LpvSettings>().glossy = glossy;
       return glossyPicture(library(), context(), scene, settings);
     };
     const Image without = with(false), on = with(true);
@@ -421,7 +423,7 @@ TEST_F(GlossyTest, NothingOfItIsThereUnlessAskedForAndNeeded) {
   };
   const auto made = [](const Scene& scene, bool glossy) {
     RenderSettings settings = glossySettings();
-    settings.lpv.glossy = glossy;
+    settings.of<LpvSettings>().glossy = glossy;
     gl::ProgramLibrary own;
     Renderer renderer(context(), own, scene, settings);
     renderer.render(test::openBoxCamera());
@@ -455,7 +457,7 @@ TEST_F(GlossyTest, AnAskedPixelListsIt) {
   renderer.renderToTheEnd(test::openBoxCamera());
   const Image image = renderer.readRadiance();
   const glm::ivec2 pixel(kGlossySize.x * 9 / 20, kGlossySize.y / 2);
-  const PixelAnswer answer = renderer.ask(context(), library(), scene, test::openBoxCamera(), pixel);
+  const PixelAnswer answer = renderer.ask(library(), test::openBoxCamera(), pixel);
   ASSERT_TRUE(std::ranges::any_of(answer.shares, [](const PixelShare& s) { return s.name == "glossy reflection"; }));
   for (int c = 0; c < 3; ++c)
     EXPECT_NEAR(answer.sum()[c], static_cast<double>(image.at(pixel.x, pixel.y)[c]), 1e-5) << c;

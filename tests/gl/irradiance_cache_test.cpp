@@ -10,10 +10,14 @@
 #include "base/error.hpp"
 #include "irradiance_cache/bounce_cache.hpp"
 #include "irradiance_cache/emission_points.hpp"
+#include "irradiance_cache/irradiance_cache.hpp"
+#include "irradiance_cache/irradiance_cache_frame.hpp"
+#include "irradiance_cache/settings.hpp"
 #include "measure/image_errors.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "rays/light_table.hpp"
 #include "render/renderer.hpp"
+#include "rsm/reflective_shadow_map.hpp"
 #include "support/faulty_shaders.hpp"
 #include "support/form_factor_twin.hpp"
 #include "support/largest_difference.hpp"
@@ -52,12 +56,12 @@ class IrradianceCacheGl : public test::SharedProgramsTest {
     s.size = glm::ivec2(size);
     s.fullFloatTarget = true;
     s.shadow.size = s.lights.spotSize = s.lights.pointSize = 512;
-    s.technique = Technique::irradianceCache;
-    s.cache.cascades.cells = 16;
-    s.cache.cascades.cascades = 2;
-    s.cache.bounces = bounces;
-    s.cache.samples = samples;
-    s.cache.fullFloat = true;
+    s.technique = "irradiance-cache";
+    s.of<IrradianceCacheSettings>().cascades.cells = 16;
+    s.of<IrradianceCacheSettings>().cascades.cascades = 2;
+    s.of<IrradianceCacheSettings>().bounces = bounces;
+    s.of<IrradianceCacheSettings>().samples = samples;
+    s.of<IrradianceCacheSettings>().fullFloat = true;
     return s;
   }
   struct Picture {
@@ -68,8 +72,8 @@ class IrradianceCacheGl : public test::SharedProgramsTest {
     Renderer renderer(context(), library(), scene, s);
     renderer.renderToTheEnd(camera);
     renderer.drain();
-    EXPECT_EQ(renderer.irradianceCache()->counts().waiting, 0u);
-    return {renderer.readRadiance(), renderer.irradianceCache()->counts()};
+    EXPECT_EQ(cacheOf(renderer.technique())->counts().waiting, 0u);
+    return {renderer.readRadiance(), cacheOf(renderer.technique())->counts()};
   }
   static void report(const std::string& what, double value) {
     std::cout << "[ measured ] " << what << ": " << value << "\n";
@@ -214,10 +218,10 @@ TEST_F(IrradianceCacheGl, ThoseWithoutAnyPathThatAreNotSeenDoNotWait) {
   Renderer renderer(context(), library, builder.scene(), settings(1, 16));
   renderer.render(kAboveFloor);
   renderer.drain();
-  EXPECT_GT(renderer.irradianceCache()->counts().records, 100u);
-  EXPECT_GT(renderer.irradianceCache()->counts().waiting, 0u);
+  EXPECT_GT(cacheOf(renderer.technique())->counts().records, 100u);
+  EXPECT_GT(cacheOf(renderer.technique())->counts().waiting, 0u);
   renderer.renderToTheEnd(lookingAt({0, 8, 0.1}, {0, 20, 0}, 0.9));  // nothing but the sky
-  EXPECT_EQ(renderer.irradianceCache()->counts().waiting, 0u);
+  EXPECT_EQ(cacheOf(renderer.technique())->counts().waiting, 0u);
 }
 
 TEST_F(IrradianceCacheGl, AFloorUnderAPictureOfTheSky) {
@@ -254,7 +258,7 @@ struct FloorAndWall {
   }
   /// Cells fine enough for what is interpolated between records to be well below what is allowed.
   static RenderSettings fine(RenderSettings s) {
-    s.cache.cascades.cells = 40;
+    s.of<IrradianceCacheSettings>().cascades.cells = 40;
     return s;
   }
   /// Over the floor, by midpoints in double: of what a point there gives, at d from `from`, per area.
@@ -322,8 +326,8 @@ TEST_F(IrradianceCacheGl, AWallBesideAFloorUnderALamp) {
       const double d2 = (x - 1.2) * (x - 1.2) + 1.0 + (z - 0.3) * (z - 0.3);
       return 0.8 / kPi * 5.0 / (d2 * std::sqrt(d2));
     };
-    // The floor gives a millimetre of itself back by the wall: that is on the floor, which the wall does not see again
-    // with one bounce.
+    // The floor gives a millimetre of itself back by the wall: that is on the floor, which the wall does not see
+    // again with one bounce.
     const Picture seen =
         picture(room.builder.scene(), room.camera, FloorAndWall::fine(settings(1, 1024, Component::indirect)));
     room.expect(
@@ -366,9 +370,9 @@ TEST_F(IrradianceCacheGl, AWallBesideAPlateThatShines) {
 // ------------------------------------------------------------------------------------
 
 RenderSettings gathered(RenderSettings s, GatherVisibility visibility = GatherVisibility::rays) {
-  s.cache.transport = CacheTransport::gather;
-  s.cache.visibility = visibility;
-  s.cache.bounceCells = 8;
+  s.of<IrradianceCacheSettings>().transport = CacheTransport::gather;
+  s.of<IrradianceCacheSettings>().visibility = visibility;
+  s.of<IrradianceCacheSettings>().bounceCells = 8;
   return s;
 }
 
@@ -383,7 +387,7 @@ TEST_F(CacheGatherGl, AWallBesideAFloorUnderTheSunALampAndASpot) {
       room.builder.sun({0, -1, 0}, glm::vec3(std::numbers::pi_v<float>));
       for (const int size : {256, 32}) {
         RenderSettings ofMap = s;
-        ofMap.rsm.size = size;
+        ofMap.of<ReflectiveShadowMap::Settings>().size = size;
         room.expect(
             picture(room.builder.scene(), room.camera, ofMap).image,
             [&](const glm::dvec3& p) {
@@ -419,21 +423,22 @@ TEST_F(IrradianceCacheGl, ItsFloorsAtPixelsAndFromCells) {
   room.builder.sun({0, -1, 0}, glm::vec3(std::numbers::pi_v<float>));  // the floor's radiance is 0.8
   const Scene& scene = room.builder.scene();
   RenderSettings s = settings(1, 16, Component::indirect);
-  s.cache.cascades.cells = 16;
-  s.cache.cascades.cascades = 1;
+  s.of<IrradianceCacheSettings>().cascades.cells = 16;
+  s.of<IrradianceCacheSettings>().cascades.cascades = 1;
   {
     Renderer renderer(context(), library(), scene, gathered(s));
     renderer.renderToTheEnd(room.camera);
     const glm::dvec3 plate[] = {{0, 0, -1}, {2, 0, -1}, {2, 0, 1}, {0, 0, 1}};
     room.expect(
-        ofWall(renderer.irradianceCacheFrame()->gatheredAtPixels()),
+        ofWall(dynamic_cast<const IrradianceCacheFrame*>(renderer.technique())->gatheredAtPixels()),
         [&](const glm::dvec3& p) {
           return 0.8 * kPi * twin::pointToPolygon(p, {1, 0, 0}, plate);
         },
         "a sunlit floor, gathered at each pixel", 0.03);
   }
   // Two bands of the radiance in the eight cells around, half a cell before the wall: the weight 1/4 + <n, w> / 2.
-  const Cascade grid = placeCascades(s.cache.cascades, scene.bounds, room.camera.position, room.camera.direction)[0];
+  const Cascade grid = placeCascades(s.of<IrradianceCacheSettings>().cascades, scene.bounds, room.camera.position,
+                                     room.camera.direction)[0];
   const auto fromCell = [&](const glm::dvec3& middle) {
     return middle.y <= 0.0 ? 0.0 : FloorAndWall::integral(middle, [&](const glm::dvec3& d, double d2) {
       return 0.8 * (0.25 + 0.5 * d.x / std::sqrt(d2)) * -d.y / (d2 * std::sqrt(d2));
@@ -457,8 +462,9 @@ TEST_F(IrradianceCacheGl, ItsFloorsAtPixelsAndFromCells) {
   };
   Renderer renderer(context(), library(), scene, s);
   renderer.renderToTheEnd(room.camera);
-  room.expect(ofWall(renderer.irradianceCacheFrame()->readFromCells(s.cache.cascades, 0.25f, 1024)), expected,
-              "a sunlit floor, from cells", 0.08);
+  room.expect(ofWall(dynamic_cast<const IrradianceCacheFrame*>(renderer.technique())
+                         ->readFromCells(s.of<IrradianceCacheSettings>().cascades, 0.25f, 1024)),
+              expected, "a sunlit floor, from cells", 0.08);
 }
 
 TEST_F(CacheGatherGl, AScreenBehindAWallIsDark) {
@@ -523,8 +529,8 @@ TEST_F(CacheGatherGl, TheSkyAloneHasIndirectLight) {
   }
 }
 
-// A floor goes on below the walls that stand on it. Its points there lie in the dark, and must not stand for the floor
-// beside them.
+// A floor goes on below the walls that stand on it. Its points there lie in the dark, and must not stand for the
+// floor beside them.
 TEST_F(CacheGatherGl, WhatSolidsHideIsNotBounced) {
   SceneBuilder builder;
   builder.sun({0.3, -1.0, 0.2}, glm::vec3(4.0f));
@@ -537,7 +543,7 @@ TEST_F(CacheGatherGl, WhatSolidsHideIsNotBounced) {
   const auto of = [&](RenderSettings s) { return meanOf(picture(builder.scene(), camera, s).image).x; };
   RenderSettings s = FloorAndWall::fine(settings(kAll, 512, Component::indirect));
   const double seen = of(gathered(s, GatherVisibility::rays));
-  s.cache.bounces = 24;  // paths of their own, none of which ends at records
+  s.of<IrradianceCacheSettings>().bounces = 24;  // paths of their own, none of which ends at records
   const double ratio = seen / of(s);
   report("walls on a floor, gathered over traced", ratio);
   EXPECT_NEAR(ratio, 1.0, 0.02);  // 8^3 cells of points miss 1.3 %; with the points below the walls it is 3.5 %
@@ -837,14 +843,14 @@ TEST_F(IrradianceCacheAgainstPaths, CornellBox) {
     // The short form leaves two bounces to AClosedRoomThatShines, which has an exact answer for them.
     if (row.bounces == 2 && !test::longTests()) continue;
     RenderSettings s = settings(row.bounces, 512, row.component);
-    s.cache.cascades.cells = 32;
-    s.cache.cascades.cascades = 3;
+    s.of<IrradianceCacheSettings>().cascades.cells = 32;
+    s.of<IrradianceCacheSettings>().cascades.cascades = 3;
     const bool all = row.transport == Transport::indirect && row.scatterings == PathTracer::kUnlimited;
     const Reference reference = all ? cornellIndirect(scene) : traced(scene, camera, row.transport, row.scatterings);
     for (const CacheTransport transport : {CacheTransport::rays, CacheTransport::gather}) {
       // Gathered, 1 % of a bounce is lost where nodes of the map are not opened, 2 % of all.
       if (transport == CacheTransport::gather && row.bounces == 2) continue;
-      s.cache.transport = transport;
+      s.of<IrradianceCacheSettings>().transport = transport;
       expectNear(picture(scene, camera, s).image, reference, transport == CacheTransport::gather ? 0.03 : 0.02, 0.05,
                  fmt::format("Cornell box, {}, {}, {} bounces", nameOf(transport), nameOf(row.component),
                              nameOfBounces(row.bounces)));
@@ -859,11 +865,11 @@ TEST_F(IrradianceCacheAgainstPaths, MoreIsBetterWhereLightIsGathered) {
   const Reference& reference = cornellIndirect(scene);
   const auto error = [&](int bounces, int cells, int map, int points) {
     RenderSettings s = settings(bounces, 1, Component::indirect);
-    s.cache.transport = CacheTransport::gather;
-    s.cache.cascades.cells = cells;
-    s.cache.cascades.cascades = 3;
-    s.cache.bounceCells = points;
-    s.rsm.size = map;
+    s.of<IrradianceCacheSettings>().transport = CacheTransport::gather;
+    s.of<IrradianceCacheSettings>().cascades.cells = cells;
+    s.of<IrradianceCacheSettings>().cascades.cascades = 3;
+    s.of<IrradianceCacheSettings>().bounceCells = points;
+    s.of<ReflectiveShadowMap::Settings>().size = map;
     const double e = relativeError(picture(scene, camera, s).image, reference.mean);
     std::cout << fmt::format("[ measured ] gathered, {} bounces, {} cells, map {}, {} bounce cells: {:.4f}\n", bounces,
                              cells, map, points, e);
@@ -881,8 +887,8 @@ TEST_F(IrradianceCacheAgainstPaths, MoreIsBetterWhereLightIsGathered) {
   EXPECT_GT(error(kAll, 32, 256, 4), best - slack);
 }
 
-/// A room of two legs at right angles, 2 wide and high; an omnidirectional lamp at the end of one, seen from the end of
-/// the other: only bounced light gets there.
+/// A room of two legs at right angles, 2 wide and high; an omnidirectional lamp at the end of one, seen from the end
+/// of the other: only bounced light gets there.
 Scene roomWithACorner() {
   SceneBuilder builder;
   Scene& scene = builder.scene();
@@ -908,9 +914,9 @@ TEST_F(IrradianceCacheAgainstPaths, ALampAroundTheCorner) {
   const Reference reference = traced(scene, camera, Transport::indirect, PathTracer::kUnlimited);
   for (const CacheTransport transport : {CacheTransport::rays, CacheTransport::gather}) {
     RenderSettings s = settings(kAll, 512, Component::indirect);
-    s.cache.transport = transport;
-    s.cache.cascades.cells = 32;
-    s.cache.cascades.cascades = 3;
+    s.of<IrradianceCacheSettings>().transport = transport;
+    s.of<IrradianceCacheSettings>().cascades.cells = 32;
+    s.of<IrradianceCacheSettings>().cascades.cascades = 3;
     const Image seen = picture(scene, camera, s).image;
     // Root mean square over the mean, of all surfaces (all pixels), and in blocks.
     double square = 0.0;
@@ -933,7 +939,7 @@ TEST_F(IrradianceCacheAgainstPaths, ARoomWithEveryKindOfLight) {
     Reference reference = traced(scene, test::openBoxCamera(), Transport::all, scatterings);
     for (const CacheTransport transport : {CacheTransport::rays, CacheTransport::gather}) {
       RenderSettings s = settings(bounces, 512);
-      s.cache.transport = transport;
+      s.of<IrradianceCacheSettings>().transport = transport;
       Image shown = picture(scene, test::openBoxCamera(), s).image;
       // What the path tracer shows of the sky itself is the background's business in forward shading.
       for (std::size_t i = 0; i < shown.pixels.size(); ++i)
@@ -982,7 +988,7 @@ TEST_F(IrradianceCacheGl, UnitsOfLengthDoNotMatter) {
 
 TEST_F(IrradianceCacheGl, UnitsOfLightDoNotMatter) {
   RenderSettings s = settings(2, 64);
-  s.cache.fullFloat = false;
+  s.of<IrradianceCacheSettings>().fullFloat = false;
   const Image reference = picture(richRoom(), test::openBoxCamera(), s).image;
   for (const float factor : {1e-3f, 1e5f}) {
     Scene scene = richRoom();
@@ -1005,7 +1011,7 @@ class IrradianceCacheKept : public IrradianceCacheGl {
   static IrradianceCache::Counts frame(Renderer& renderer, const Camera& camera) {
     renderer.render(camera);
     renderer.drain();
-    return renderer.irradianceCache()->counts();
+    return cacheOf(renderer.technique())->counts();
   }
   static double brightnessOf(const Renderer& renderer) {
     const glm::dvec3 mean = meanOf(renderer.readRadiance());
@@ -1016,8 +1022,8 @@ class IrradianceCacheKept : public IrradianceCacheGl {
 TEST_F(IrradianceCacheKept, PathsGoOnWhereTheCameraHasBeen) {
   const Scene scene = test::openBox();
   RenderSettings s = settings(1, 256);
-  s.cache.leastRays = 16;
-  s.cache.mostChange = 0.0f;
+  s.of<IrradianceCacheSettings>().leastRays = 16;
+  s.of<IrradianceCacheSettings>().mostChange = 0.0f;
   const Camera here = test::openBoxCamera(),
                there = lookingAt({2.0, 1.0, 11.0}, {0.5, -1.0, 0.0}, 0.9);  // the finer grid moves
   Renderer renderer(context(), library(), scene, s);
@@ -1029,7 +1035,7 @@ TEST_F(IrradianceCacheKept, PathsGoOnWhereTheCameraHasBeen) {
   // Sixteen frames of 16 paths: all have their 256.
   int frames = 1;
   for (IrradianceCache::Counts now = first; now.waiting > 0 && frames < 100; ++frames) now = frame(renderer, here);
-  EXPECT_EQ(frames, 256 / s.cache.rays);
+  EXPECT_EQ(frames, 256 / s.of<IrradianceCacheSettings>().rays);
   renderer.render(here);
   EXPECT_TRUE(renderer.isSettled());
   const Image before = renderer.readRadiance();
@@ -1065,10 +1071,10 @@ TEST_F(IrradianceCacheKept, WhatIsSeenAfterAMoveIsWhatIsSeenFromTheStart) {
   const int red = builder.material({0.5f, 0.1f, 0.1f});
   for (const double x : {-3.0, -1.0, 1.0, 3.0}) builder.plate({x, 0.5, 0.0}, {0, 1, 0}, {0, 0, 8}, red);
   RenderSettings s = settings(1, 256);
-  s.cache.leastRays = 256;
-  s.cache.mostChange = 0.0f;
-  s.cache.cascades.cellSize = 0.5;
-  s.cache.cascades.heldInScene = false;
+  s.of<IrradianceCacheSettings>().leastRays = 256;
+  s.of<IrradianceCacheSettings>().mostChange = 0.0f;
+  s.of<IrradianceCacheSettings>().cascades.cellSize = 0.5;
+  s.of<IrradianceCacheSettings>().cascades.heldInScene = false;
   Renderer renderer(context(), library(), builder.scene(), s);
   double worst = 0.0;
   for (int i = 0; i < 12; ++i) {
@@ -1085,7 +1091,7 @@ TEST_F(IrradianceCacheKept, WhatIsSeenAfterAMoveIsWhatIsSeenFromTheStart) {
       0.03);  // other points of the same cells, where irradiance changes from a wall's foot to the middle between two
   EXPECT_GT(worst, 0.0);
   renderer.drain();
-  EXPECT_EQ(renderer.irradianceCache()->counts().left, 0u);
+  EXPECT_EQ(cacheOf(renderer.technique())->counts().left, 0u);
 }
 
 /// Of a pixel, relative to what it was or, where it is dark, to the picture's mean.
@@ -1104,8 +1110,8 @@ double largestStep(const Image& a, const Image& b) {
 TEST_F(IrradianceCacheKept, WhatIsSeenChangesByNoMoreThanTheBoundAndArrives) {
   const Scene scene = test::openBox();
   const Camera here = lookingAt({0.0, 0.5, 8.4}, {4.0, -4.0, -5.0}, 0.4);
-  // The view stays and the volume moves, so that nothing but the volume changes the picture. What is seen stays in view
-  // of the volume's wider camera.
+  // The view stays and the volume moves, so that nothing but the volume changes the picture. What is seen stays in
+  // view of the volume's wider camera.
   struct Walk {
     double largestStep = 0.0;
     Image last;
@@ -1113,10 +1119,11 @@ TEST_F(IrradianceCacheKept, WhatIsSeenChangesByNoMoreThanTheBoundAndArrives) {
   };
   const auto walk = [&](float mostChange) {
     RenderSettings s = settings(1, 16, Component::indirect);
-    s.cache.leastRays = 16;  // noise of new records is what would be seen
-    s.cache.mostChange = mostChange;
-    s.cache.cascades.heldInScene = false;
-    s.cache.cascades.cellSize = 3.0;  // all of the box lies in the coarser grid, some of it in the finer one
+    s.of<IrradianceCacheSettings>().leastRays = 16;  // noise of new records is what would be seen
+    s.of<IrradianceCacheSettings>().mostChange = mostChange;
+    s.of<IrradianceCacheSettings>().cascades.heldInScene = false;
+    s.of<IrradianceCacheSettings>().cascades.cellSize =
+        3.0;  // all of the box lies in the coarser grid, some of it in the finer one
     Renderer renderer(context(), library(), scene, s);
     Camera volume = lookingAt(here.position, {4.0, -4.0, -5.0}, 1.0);
     for (int i = 0; i < 3; ++i) renderer.render(here, volume), renderer.drain();
@@ -1155,9 +1162,9 @@ TEST_F(IrradianceCacheKept, TurningChangesNothingThatIsSeen) {
   const Scene scene = test::openBox();
   const Camera narrow = lookingAt({0.0, 0.0, -0.2}, {0.0, 0.0, -5.0}, 0.4);
   RenderSettings s = settings(1, 64, Component::indirect);
-  s.cache.cascades.cells = 32;
-  s.cache.cascades.cellSize = 0.9;  // the finer grid fades out on the back wall
-  s.cache.cascades.heldInScene = false;
+  s.of<IrradianceCacheSettings>().cascades.cells = 32;
+  s.of<IrradianceCacheSettings>().cascades.cellSize = 0.9;  // the finer grid fades out on the back wall
+  s.of<IrradianceCacheSettings>().cascades.heldInScene = false;
   Renderer renderer(context(), library(), scene, s);
   const auto look = [&](double angle) {
     renderer.render(
@@ -1197,7 +1204,7 @@ TEST_F(IrradianceCacheKept, ATurnShowsWhatWasKnownBefore) {
   };
   const auto turn = [&](int around) {
     RenderSettings s = settings(1, 64, Component::indirect);
-    s.cache.prefetch = around;
+    s.of<IrradianceCacheSettings>().prefetch = around;
     Renderer renderer(context(), library(), scene, s);
     const auto camera = [](int i) {
       const double yaw = glm::radians(2.0 * i);
@@ -1232,11 +1239,11 @@ TEST_F(IrradianceCacheKept, WhatIsBrightBesideTheDarkIsAddedSlowly) {
   for (const double side : {1.0, -1.0}) builder.plate({0.02 * side, 3, 0}, {0, 6, 0}, {0, 0, side * 16}, grey);
   builder.plate({3, 4, 0}, {3, 0, 0}, {0, 0, 3}, lamp);
   RenderSettings s = settings(1, 256);
-  s.cache.leastRays = 256;
-  s.cache.cascades.cascades = 1;
-  s.cache.cascades.cellSize = 1.0;
-  s.cache.cascades.heldInScene = false;
-  s.cache.prefetch = 0;
+  s.of<IrradianceCacheSettings>().leastRays = 256;
+  s.of<IrradianceCacheSettings>().cascades.cascades = 1;
+  s.of<IrradianceCacheSettings>().cascades.cellSize = 1.0;
+  s.of<IrradianceCacheSettings>().cascades.heldInScene = false;
+  s.of<IrradianceCacheSettings>().prefetch = 0;
   Renderer renderer(context(), library(), builder.scene(), s);
   // A square of the floor, from above, below the lamp and beside the screen.
   const auto look = [&](double x, double side) {
@@ -1247,7 +1254,7 @@ TEST_F(IrradianceCacheKept, WhatIsBrightBesideTheDarkIsAddedSlowly) {
   for (int i = 0; i < 4; ++i) look(1.5, 0.2);
   look(1.5, 1.8);  // what comes into view now is new: x from 0.6 to 2.4
   std::map<int, IrradianceCache::Shown> floor;
-  for (const IrradianceCache::Shown& record : renderer.irradianceCache()->shown())
+  for (const IrradianceCache::Shown& record : cacheOf(renderer.technique())->shown())
     if (record.face == 2 && record.cell.z == 0) floor.emplace(record.cell.x, record);
   ASSERT_TRUE(floor.contains(-1) && floor.contains(0) && floor.contains(2));
   report("bright over dark", floor.at(0).irradiance.x / floor.at(-1).irradiance.x);
@@ -1262,15 +1269,16 @@ TEST_F(IrradianceCacheKept, WhatIsBrightBesideTheDarkIsAddedSlowly) {
 TEST_F(IrradianceCacheKept, SurfacesAllAroundHaveRecords) {
   const Scene scene = furnace(glm::vec3(0.5f), glm::vec3(1.0f));
   RenderSettings s = settings(1, 16);
-  s.cache.cascades.cascades = 3;
-  s.cache.cascades.cellSize = 0.42;  // 0.21, 0.105: a wall of 2 by 2 is cut into 6 by 6 and 10 by 10 cells
+  s.of<IrradianceCacheSettings>().cascades.cascades = 3;
+  s.of<IrradianceCacheSettings>().cascades.cellSize =
+      0.42;  // 0.21, 0.105: a wall of 2 by 2 is cut into 6 by 6 and 10 by 10 cells
   const auto count = [&](int around) {
-    s.cache.prefetch = around;
+    s.of<IrradianceCacheSettings>().prefetch = around;
     Renderer renderer(context(), library(), scene, s);
     renderer.render(lookingAt({0.05, 0.02, 0.03}, {1.0, 0.1, 0.1}, 0.2));
     renderer.drain();
     std::array<std::array<int, 6>, 3> counts{};
-    for (const IrradianceCache::Shown& r : renderer.irradianceCache()->shown()) {
+    for (const IrradianceCache::Shown& r : cacheOf(renderer.technique())->shown()) {
       const int axis = r.face / 2;
       const float sign = r.face % 2 == 0 ? 1.0f : -1.0f;
       EXPECT_NEAR(r.normal[axis], sign, 1e-5);
@@ -1298,8 +1306,8 @@ TEST_F(IrradianceCacheKept, WhatTurnsOutBlackArrives) {
   builder.plate({-0.01, 1, 0}, {0, 0, 8}, {0, 2, 0}, white);
   builder.sun({-1.0, -1.0, 0.0}, glm::vec3(3.0f));
   RenderSettings s = settings(1, 64, Component::indirect);
-  s.cache.prefetch = 0;
-  s.cache.mostChange = 0.01f;
+  s.of<IrradianceCacheSettings>().prefetch = 0;
+  s.of<IrradianceCacheSettings>().mostChange = 0.01f;
   Renderer renderer(context(), library(), builder.scene(), s);
   const auto look = [&](double x) { frame(renderer, lookingAt({0, 6, 0}, {x, 0, 0}, 0.1)); };
   const auto settle = [&](double x) {
@@ -1321,14 +1329,14 @@ TEST_F(IrradianceCacheKept, WhatTurnsOutBlackArrives) {
 TEST_F(IrradianceCacheKept, AFewPathsAreEnoughOfACascade) {
   const Scene scene = test::openBox();
   RenderSettings s = settings(1, 4);
-  s.cache.rays = s.cache.leastRays = 4;
+  s.of<IrradianceCacheSettings>().rays = s.of<IrradianceCacheSettings>().leastRays = 4;
   Renderer renderer(context(), library(), scene, s);
   const Camera camera = lookingAt({0.5, 0.3, -3.0}, {0.3, 0.2, -5.0}, 0.9);
   renderer.renderToTheEnd(lookingAt({0.5, 0.3, 12.0}, {0.3, 0.2, -5.0}, 0.9));  // finds those of the coarser one
   renderer.renderToTheEnd(camera);
   int records = 0;
   for (const glm::ivec2& pixel : {glm::ivec2(20, 20), glm::ivec2(32, 32), glm::ivec2(41, 13)})
-    for (const PixelShare& share : renderer.ask(context(), library(), scene, camera, pixel).shares) {
+    for (const PixelShare& share : renderer.ask(library(), camera, pixel).shares) {
       if (!share.name.starts_with("record")) continue;
       ++records;
       EXPECT_TRUE(share.name.ends_with("cascade 1")) << share.name << " " << share.weight.value_or(0.0);
@@ -1344,12 +1352,13 @@ TEST_F(IrradianceCacheKept, CascadesAreBlendedEvenly) {
   builder.plate({0, 0, 0}, {0, 0, 40}, {40, 0, 0}, builder.material(glm::vec3(0.5f)));
   const Scene scene = builder.scene();
   RenderSettings s = settings(1, 64);
-  s.cache.cascades.cellSize = 2.0;
-  s.cache.cascades.heldInScene = false;
+  s.of<IrradianceCacheSettings>().cascades.cellSize = 2.0;
+  s.of<IrradianceCacheSettings>().cascades.heldInScene = false;
   Renderer renderer(context(), library(), scene, s);
   const Camera camera = lookingAt({0.1, 1.5, 0.2}, {0.1, 0.0, -6.0}, 0.9);
   renderer.renderToTheEnd(camera);
-  const double reach = placeCascadesAround(s.cache.cascades, scene.bounds, camera, 1.0)[0].reach;
+  const double reach =
+      placeCascadesAround(s.of<IrradianceCacheSettings>().cascades, scene.bounds, camera, 1.0)[0].reach;
   const auto wayTo = [](double share) {
     constexpr int kSteps = 10000;
     double way = 0.0;
@@ -1362,7 +1371,7 @@ TEST_F(IrradianceCacheKept, CascadesAreBlendedEvenly) {
   int between = 0;
   double worst = 0.0;
   for (int y = 24; y < 64; ++y) {
-    const PixelAnswer answer = renderer.ask(context(), library(), scene, camera, {32, y});
+    const PixelAnswer answer = renderer.ask(library(), camera, {32, y});
     double finer = 0.0, all = 0.0;
     for (const PixelShare& share : answer.shares)
       if (share.name.starts_with("record")) {
@@ -1393,9 +1402,9 @@ TEST_F(IrradianceCacheKept, WithoutRoomRecordsAreLeftOutAndCounted) {
     builder.triangle(corner(), corner(), corner(), grey);
   }
   RenderSettings s = settings(1, 16, Component::all, 128);
-  s.cache.cascades.cells = 12;
-  s.cache.cascades.cascades = 1;
-  s.cache.cascades.cellSize = 2.1 / 12.0;
+  s.of<IrradianceCacheSettings>().cascades.cells = 12;
+  s.of<IrradianceCacheSettings>().cascades.cascades = 1;
+  s.of<IrradianceCacheSettings>().cascades.cellSize = 2.1 / 12.0;
   Renderer renderer(context(), library(), builder.scene(), s);
   IrradianceCache::Counts counts;
   for (const glm::dvec3& from : {glm::dvec3(4, 0, 0), glm::dvec3(-4, 0.1, 0), glm::dvec3(0, 4, 0),
@@ -1418,8 +1427,8 @@ TEST_F(IrradianceCacheKept, TinyAndHugeGridsAreDrawn) {
   for (const auto& [cells, cascades] : {std::pair{2, 4}, std::pair{3, 3}, std::pair{64, 1}}) {
     SceneBuilder builder = floorAlone();
     RenderSettings s = settings(1, 16, Component::direct);
-    s.cache.cascades.cells = cells;
-    s.cache.cascades.cascades = cascades;
+    s.of<IrradianceCacheSettings>().cascades.cells = cells;
+    s.of<IrradianceCacheSettings>().cascades.cascades = cascades;
     for (const glm::vec3& p : picture(builder.scene(), kAboveFloor, s).image.pixels)
       ASSERT_NEAR(p.x, 0.5f, 1e-5f) << cells << " " << cascades;
   }
@@ -1434,7 +1443,7 @@ TEST_F(IrradianceCacheGl, AreDrawnAsDisksWhereTheyAre) {
   s.size = glm::ivec2(256);
   Renderer renderer(context(), library(), scene, s);
   renderer.renderToTheEnd(kInside);
-  const std::vector<IrradianceCache::Shown> records = renderer.irradianceCache()->shown();
+  const std::vector<IrradianceCache::Shown> records = cacheOf(renderer.technique())->shown();
   ASSERT_GT(records.size(), 100u);
   const glm::dvec3 irradiance = kPi * emission / (1.0 - albedo);
   for (const IrradianceCache::Shown& record : records) {
@@ -1456,7 +1465,9 @@ TEST_F(IrradianceCacheGl, AreDrawnAsDisksWhereTheyAre) {
   gl::Lines(library()).draw(target, {{0, 0}, s.size, 0.5f * size, glm::vec2(0.5f), size}, view, lines, 1.0f);
   const std::vector<glm::vec4> texels = picture.readRgba();
   std::vector<bool> near(texels.size());
-  const double cell = placeCascades(s.cache.cascades, scene.bounds, kInside.position, kInside.direction)[1].cellSize;
+  const double cell =
+      placeCascades(s.of<IrradianceCacheSettings>().cascades, scene.bounds, kInside.position, kInside.direction)[1]
+          .cellSize;
   int drawn = 0, dark = 0;
   for (const IrradianceCache::Shown& record : records) {
     const glm::vec4 clip = view.clipFromWorld * glm::vec4(record.position, 1.0f);

@@ -1,6 +1,7 @@
 // Light shafts on GL: against closed forms, and against the path tracer in the same medium.
 #include "cascades/cascades.hpp"
 #include "lpv/light_shafts.hpp"
+#include "lpv/lpv_frame.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "render/renderer.hpp"
 #include "support/gl_fixture.hpp"
@@ -32,11 +33,11 @@ class LightShaftsTest : public test::SharedProgramsTest {
   }
   static RenderSettings settingsOf(Component component) {
     RenderSettings settings;
-    settings.technique = Technique::lpv;
+    settings.technique = "lpv";
     settings.component = component;
     settings.size = kShaftsSize;
     settings.fullFloatTarget = true;
-    settings.lpv.shafts = true;
+    settings.of<LpvSettings>().shafts = true;
     return settings;
   }
   static Image picture(const Scene& scene, const Camera& camera, const RenderSettings& settings) {
@@ -60,9 +61,9 @@ class LightShaftsTest : public test::SharedProgramsTest {
   static glm::dvec3 mean(const Image& image) { return meanOf(image); }
 };
 
-// From the side, under a vertical sun: every point of the ray is as deep in the haze, so the integral is a closed form.
-// The view is 1e-4 wide, and floats know its rays' directions to as much: phase functions of g = 0.5 and -0.7 change by
-// 1.2 and 1.4 times that.
+// From the side, under a vertical sun: every point of the ray is as deep in the haze, so the integral is a closed
+// form. The view is 1e-4 wide, and floats know its rays' directions to as much: phase functions of g = 0.5 and -0.7
+// change by 1.2 and 1.4 times that.
 TEST_F(LightShaftsTest, HazeUnderTheSunIsAClosedForm) {
   Medium medium = test::homogeneous({0.05, 0.1, 0.4}, {0.0, 0.1, 0.02}, 0.0);
   medium.anisotropy = {0.0f, 0.5f, -0.7f};
@@ -86,9 +87,9 @@ TEST_F(LightShaftsTest, HazeUnderTheSunIsAClosedForm) {
   EXPECT_NEAR(picture(scene, camera, settingsOf(Component::all)).at(9, 9).x / rayleigh, 1.0, 3e-4);
 }
 
-// A blocker's shaft of shadow, floor and haze, against paths of one scattering: the same light. What differs is noise,
-// the shadow map's edges and, of a slanting sun, S within a piece: 64 pieces of 0.17 units of extinction 0.2 to 0.4
-// leave less than (0.17 * 0.4)^2 / 24 of it, 2e-4.
+// A blocker's shaft of shadow, floor and haze, against paths of one scattering: the same light. What differs is
+// noise, the shadow map's edges and, of a slanting sun, S within a piece: 64 pieces of 0.17 units of extinction 0.2
+// to 0.4 leave less than (0.17 * 0.4)^2 / 24 of it, 2e-4.
 TEST_F(LightShaftsTest, ShaftsOfTheSunAgreeWithThePathTracer) {
   Scene scene = hazeOver(test::homogeneous({0.15, 0.2, 0.3}, {0.05, 0.05, 0.1}, 0.4), 0.5f, 0.25, {0.35, -1, 0.2});
   const int black = static_cast<int>(scene.materials.size());
@@ -111,20 +112,20 @@ TEST_F(LightShaftsTest, ShaftsOfTheSunAgreeWithThePathTracer) {
   EXPECT_LT(error, 0.03);
   // Without shafts it is another picture: no haze, the boundary a grey box.
   RenderSettings without = settingsOf(Component::direct);
-  without.lpv.shafts = false;
+  without.of<LpvSettings>().shafts = false;
   EXPECT_GT(std::abs(mean(picture(scene, camera, without)).y / mean(there).y - 1.0), 0.2);
 }
 
-/// What the volume's light scatters towards the eye along a ray from `from` in direction `along`, `length` long, green,
-/// per sigma_s: its coefficients read back, interpolated and integrated in double precision.
+/// What the volume's light scatters towards the eye along a ray from `from` in direction `along`, `length` long,
+/// green, per sigma_s: its coefficients read back, interpolated and integrated in double precision.
 double scatteredOfVolume(const Renderer& renderer, const Cascade& grid, double irradiance, const glm::dvec3& from,
                          const glm::dvec3& along, double length, double extinction, double g) {
-  // Radiance Y00 l0 + Y1 <l1, w> gives a plane pi Y00 l0 + 2 pi / 3 Y1 <l1, -n>; the lookup of coefficients c gives it
-  // Y00 2 pi / 3 c0 + Y1 (Omega_f + 8 Omega_s / sqrt 5) <c1, -n> (engine/lpv/README.md).
+  // Radiance Y00 l0 + Y1 <l1, w> gives a plane pi Y00 l0 + 2 pi / 3 Y1 <l1, -n>; the lookup of coefficients c gives
+  // it Y00 2 pi / 3 c0 + Y1 (Omega_f + 8 Omega_s / sqrt 5) <c1, -n> (engine/lpv/README.md).
   const double y00 = 0.5 / std::sqrt(std::numbers::pi), y1 = std::sqrt(0.75 / std::numbers::pi);
   const double band0 = y00 * 2.0 / 3.0,
                band1 = y1 * (0.400669684646 + 8.0 * 0.423431354457 / std::sqrt(5.0)) * 1.5 / std::numbers::pi;
-  const gl::Texture& green = renderer.lpv()->result()[1];
+  const gl::Texture& green = volumeOf(renderer.technique())->result()[1];
   const std::vector<glm::vec4> texels = green.readRgba();
   const glm::ivec3 size = green.size();
   const auto at = [&](const glm::ivec3& cell) {
@@ -148,12 +149,12 @@ double scatteredOfVolume(const Renderer& renderer, const Cascade& grid, double i
   return sum;
 }
 
-// How much light haze gets from the volume. A medium scatters in proportion to the fluence, the path that light travels
-// per volume. A step of propagation carries a cell's whole flux one cell on, and the lookup counts 2/3 of a cell for
-// it, the mean chord 4 V / A of a cube: c0 gives l0 = 2/3 c0, 4 pi of it the fluence. So after N steps all light has
-// been counted with 2/3 (N + 1) cells of path, wherever it went (a lobe's first step gains 1.138208 by the kernel's
-// clamp). It went sqrt(1.33 N - 0.33) cells, since it forgets its direction: after 8 steps 5.9 cells of path for 3.2
-// cells of way, 1.84 times too much, after 48 about 4.
+// How much light haze gets from the volume. A medium scatters in proportion to the fluence, the path that light
+// travels per volume. A step of propagation carries a cell's whole flux one cell on, and the lookup counts 2/3 of a
+// cell for it, the mean chord 4 V / A of a cube: c0 gives l0 = 2/3 c0, 4 pi of it the fluence. So after N steps all
+// light has been counted with 2/3 (N + 1) cells of path, wherever it went (a lobe's first step gains 1.138208 by the
+// kernel's clamp). It went sqrt(1.33 N - 0.33) cells, since it forgets its direction: after 8 steps 5.9 cells of path
+// for 3.2 cells of way, 1.84 times too much, after 48 about 4.
 TEST_F(LightShaftsTest, EachStepCountsTwoThirdsOfACellOfPath) {
   const std::vector<test::RsmTexel> light{{{10.5f, 10.0f, 10.5f, 1}, {0, 1, 0, 1}, glm::vec3(1.0f)}};
   const test::RsmTextures textures(light, 1.0);
@@ -171,8 +172,8 @@ TEST_F(LightShaftsTest, EachStepCountsTwoThirdsOfACellOfPath) {
   }
 }
 
-/// Fluence in the layers above an endless floor of radiosity 1, by a chain over layers that knows no grid: what the six
-/// directions of travel carry per step, of the functions (c0, c1 upwards) of a layer. Cells of side 1.
+/// Fluence in the layers above an endless floor of radiosity 1, by a chain over layers that knows no grid: what the
+/// six directions of travel carry per step, of the functions (c0, c1 upwards) of a layer. Cells of side 1.
 std::vector<double> fluenceAboveFloor(int steps, int layers) {
   const double y00 = 0.5 / std::sqrt(std::numbers::pi), y1 = std::sqrt(0.75 / std::numbers::pi), root5 = std::sqrt(5.0);
   const double front = 4.0 * std::atan(std::sqrt(11.0) / 33.0);
@@ -243,26 +244,26 @@ TEST_F(LightShaftsTest, AboveAFloorTheVolumesLightGrowsWithTheSteps) {
   EXPECT_NEAR(fluenceAboveFloor(512, 1)[0] / fluenceAboveFloor(128, 1)[0], 2.0, 0.02);
 }
 
-// Light that a sunlit floor sends up, scattered above it towards a camera below that sees nothing else: rays enter over
-// the floor's edge and rise. The volume's part is the integral over what lies in its textures: to 0.3 %, of 16 bits and
-// of 64 points a ray. How right that light is, paths of floor and haze tell; the two tests above say why it is too
-// much.
+// Light that a sunlit floor sends up, scattered above it towards a camera below that sees nothing else: rays enter
+// over the floor's edge and rise. The volume's part is the integral over what lies in its textures: to 0.3 %, of 16
+// bits and of 64 points a ray. How right that light is, paths of floor and haze tell; the two tests above say why it
+// is too much.
 TEST_F(LightShaftsTest, LightOfTheVolumeScatters) {
   const double sigma = 0.01, g = 0.4;
   const Scene scene = hazeOver(test::homogeneous(glm::dvec3(sigma), glm::dvec3(0.0), g), 0.8f, 0.05, {0, -1, 0});
   RenderSettings settings = settingsOf(Component::indirect);
-  settings.lpv.cascades.cells = 16;
-  settings.lpv.cascades.cascades = 1;
+  settings.of<LpvSettings>().cascades.cells = 16;
+  settings.of<LpvSettings>().cascades.cascades = 1;
   for (const int iterations : {8, 48})
     for (const double height : {0.5, 1.0, 1.5}) {
-      settings.lpv.iterations = iterations;
+      settings.of<LpvSettings>().iterations = iterations;
       const glm::dvec3 entry(0, height, 4);
       const Camera camera = test::cameraAt({0, -3, 20}, entry);
       Renderer renderer(context(), library(), scene, settings);
       renderer.renderToTheEnd(camera);
       const double here = mean(renderer.readRadiance()).y;
       const std::vector<Cascade> grids =
-          placeCascades(settings.lpv.cascades, scene.bounds, camera.position, camera.direction);
+          placeCascades(settings.of<LpvSettings>().cascades, scene.bounds, camera.position, camera.direction);
       const double integral =
           scatteredOfVolume(renderer, grids[0], 5.0, entry, camera.direction, 8.0 / -camera.direction.z, sigma, g);
       EXPECT_NEAR(here / (sigma * integral), 1.0, 3e-3) << iterations << " steps, height " << height;
@@ -295,7 +296,7 @@ TEST_F(LightShaftsTest, NothingOfThemIsThereUnlessAskedFor) {
   const Scene scene = hazeOver(test::homogeneous(glm::dvec3(0.1), glm::dvec3(0.0), 0.0), 0.5f, 0.25, {0, -1, 0});
   const auto made = [&](const Scene& of, bool shafts) {
     RenderSettings settings = settingsOf(Component::all);
-    settings.lpv.shafts = shafts;
+    settings.of<LpvSettings>().shafts = shafts;
     gl::ProgramLibrary own;
     Renderer renderer(context(), own, of, settings);
     renderer.render(test::cameraAt({0, 2, 20}, {0, 2, 0}, 0.5));

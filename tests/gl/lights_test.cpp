@@ -2,8 +2,12 @@
 // is left out.
 #include "base/angles.hpp"
 #include "base/log.hpp"
+#include "lpv/light_propagation_volume.hpp"
+#include "lpv/settings.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "render/renderer.hpp"
+#include "rsm/rsm_frame.hpp"
+#include "rsm/rsm_gather.hpp"
 #include "support/gl_fixture.hpp"
 #include "support/sun_frame.hpp"
 
@@ -69,7 +73,7 @@ Camera viewFrom(const glm::dvec3& position, const glm::dvec3& direction, double 
 
 class LightsGl : public test::GlTest {
  protected:
-  static RenderSettings settings(Technique technique, glm::ivec2 size) {
+  static RenderSettings settings(std::string_view technique, glm::ivec2 size) {
     RenderSettings s;
     s.technique = technique;
     s.size = size;
@@ -80,7 +84,7 @@ class LightsGl : public test::GlTest {
   void eachPixel(const LitScene& scene, const Camera& camera, const glm::dvec3& n, double h,
                  const std::function<void(const glm::dvec3&, double)>& check) {
     constexpr int kSize = 96;
-    Renderer renderer(context(), programs(), scene, settings(Technique::direct, {kSize, kSize}));
+    Renderer renderer(context(), programs(), scene, settings("direct", {kSize, kSize}));
     renderer.render(camera);
     const Image image = renderer.readRadiance();
     const glm::dvec3 right = glm::cross(camera.direction, camera.up);
@@ -138,8 +142,8 @@ TEST_F(LightsGl, ASpotFallsOffBetweenItsAngles) {
   std::cout << "[ measured ] spot on a plate, largest error of the falloff: " << largest << "\n";
 }
 
-// A box around the lamp with a hole in each side, each of another shape and off its middle, in a room: each wall is lit
-// through its hole.
+// A box around the lamp with a hole in each side, each of another shape and off its middle, in a room: each wall is
+// lit through its hole.
 TEST_F(LightsGl, AllSixFacesOfAnOmnidirectionalLightCastShadows) {
   constexpr double kInner = 0.5, kOuter = 2.0;
   LitScene scene;
@@ -237,8 +241,8 @@ TEST_F(LightsGl, TotalFluxAndAreaOfAnOmnidirectionalLightAreTheRooms) {
   }
 }
 
-// A plate below an omnidirectional lamp, a quarter of its texture white: its flux is that of the solid angle, a quarter
-// of it.
+// A plate below an omnidirectional lamp, a quarter of its texture white: its flux is that of the solid angle, a
+// quarter of it.
 TEST_F(LightsGl, AnOmnidirectionalLightsFluxIsTexturedAllOverATriangle) {
   LitScene scene;
   scene.quad({-0.9, -0.9, 0}, {0.9, -0.9, 0}, {0.9, 0.9, 0}, {-0.9, 0.9, 0});
@@ -321,8 +325,8 @@ TEST_F(LightsGl, TheVolumeAddsLightsUp) {
     for (std::size_t i = 0; i < both[grid].size(); ++i)
       for (int c = 0; c < 4; ++c)
         EXPECT_NEAR(counted[grid][i][c], both[grid][i][c], 1e-4f * (1e-2f + std::abs(both[grid][i][c]))) << grid;
-  // Perspective lights have true areas and no area across the rays: the deviations of the sun's leave theirs finite and
-  // unchanged.
+  // Perspective lights have true areas and no area across the rays: the deviations of the sun's leave theirs finite
+  // and unchanged.
   s.deviations.surfelArea = s.deviations.fluxUnits = true;
   const auto deviating = grids({a, b});
   EXPECT_EQ(deviating[0], both[0]);
@@ -427,7 +431,7 @@ TEST_F(LightsGl, DirectLightAddsUp) {
       },
   };
   const auto picture = [&](const LitScene& lit) {
-    Renderer renderer(context(), programs(), lit, settings(Technique::direct, {96, 96}));
+    Renderer renderer(context(), programs(), lit, settings("direct", {96, 96}));
     renderer.render(viewFrom({0, 0, 4}, {0, 0, -1}, 0.8));
     return renderer.readRadiance();
   };
@@ -472,11 +476,11 @@ TEST_F(LightsGl, MasksCutShadowsOut) {
       if (kind == 0) scene.sun = DirectionalLight{{0, 0, -1}, glm::vec3(1.0f)};
       if (kind == 1) scene.spots = {spot};
       if (kind == 2) scene.points = {PointLight{{0, 0, 2}, glm::vec3(2.0f)}};
-      RenderSettings s = settings(Technique::lpv, {16, 16});
+      RenderSettings s = settings("lpv", {16, 16});
       s.component = Component::all;
-      s.sunCascades.cascades = 2;
-      s.lpv.cascades.cells = 8;
-      s.lpv.iterations = 0;
+      s.shadow.cascades.cascades = 2;
+      s.of<LpvSettings>().cascades.cells = 8;
+      s.of<LpvSettings>().iterations = 0;
       Renderer renderer(context(), programs(), scene, s);
       renderer.render(viewFrom({x, 0, 0.9}, {0, 0, -1}, 0.1));
       const double radiance = static_cast<double>(renderer.readRadiance().at(8, 8).x);
@@ -502,7 +506,7 @@ TEST_F(LightsGl, WhatASceneHasNoneOfLeavesNoTrace) {
     gl::ProgramLibrary library;
     return Renderer(context(), library, s, r).gpuBytes();
   };
-  for (const Technique technique : {Technique::direct, Technique::lpv}) {
+  for (const std::string_view technique : {"direct", "lpv"}) {
     gl::ProgramLibrary library;
     Renderer renderer(context(), library, scene, settings(technique, {32, 32}));
     for (int i = 0; i < 3; ++i) renderer.render(viewFrom({0, 0, 0.5}, {0, 0, -1}, 1.0));
@@ -519,7 +523,7 @@ TEST_F(LightsGl, WhatASceneHasNoneOfLeavesNoTrace) {
       EXPECT_TRUE(std::count(leftOut.begin(), leftOut.end(), name) == 1) << name;
   }
   // What each kind costs, to the byte.
-  const RenderSettings s = settings(Technique::direct, {32, 32});
+  const RenderSettings s = settings("direct", {32, 32});
   const std::size_t sunOnly = bytes(scene, s);
   LitScene withPoint = scene, withSpot = scene, withoutSun = scene;
   withPoint.points = {PointLight{glm::dvec3(0.1), glm::vec3(1.0f)}};
@@ -531,7 +535,7 @@ TEST_F(LightsGl, WhatASceneHasNoneOfLeavesNoTrace) {
   withoutSun.sun.reset();
   EXPECT_EQ(bytes(withoutSun, s), sunOnly - 2048u * 2048u * 4u);
   RenderSettings cascades = s;
-  cascades.sunCascades.cascades = 3;
+  cascades.shadow.cascades.cascades = 3;
   EXPECT_EQ(bytes(scene, cascades), sunOnly + 2u * 2048u * 2048u * 4u + sizeof(shared::SunCascadeConstants));
   EXPECT_EQ(bytes(withoutSun, cascades), bytes(withoutSun, s));
 }
@@ -588,13 +592,13 @@ TEST_F(LightsGl, TheGatherOfEachLightIsThatOfPathsThroughWalls) {
             {0.2, -0.5, -0.5});  // a shelf, which blocks direct light alone
   const Camera camera = viewFrom({0.2, 0.1, 0.9}, {-0.2, -0.2, -1.0}, 1.2);
   const auto gathered = [&](const LitScene& scene, bool interpolate) {
-    RenderSettings s = settings(Technique::rsm, {24, 18});
+    RenderSettings s = settings("rsm", {24, 18});
     s.component = Component::indirect;
     s.fullFloatTarget = true;
-    s.gather.radius = 1.5f;
-    s.gather.samples = 1024;
-    s.rsm.size = 64;
-    s.gather.interpolate = interpolate;
+    s.of<RsmGather::Settings>().radius = 1.5f;
+    s.of<RsmGather::Settings>().samples = 1024;
+    s.of<ReflectiveShadowMap::Settings>().size = 64;
+    s.of<RsmGather::Settings>().interpolate = interpolate;
     Renderer renderer(context(), programs(), scene, s);
     renderer.render(camera);
     return renderer.readRadiance();
@@ -644,10 +648,10 @@ TEST_F(LightsGl, WithoutLightThereIsNoGather) {
   LitScene scene;
   scene.room(1.0);
   const auto gathers = [&] {
-    Renderer renderer(context(), programs(), scene, settings(Technique::rsm, {16, 16}));
+    Renderer renderer(context(), programs(), scene, settings("rsm", {16, 16}));
     const auto leftOut = renderer.leftOut();
-    EXPECT_EQ(std::count(leftOut.begin(), leftOut.end(), "rsm gather") == 0, renderer.gather() != nullptr);
-    return renderer.gather() != nullptr;
+    EXPECT_EQ(std::count(leftOut.begin(), leftOut.end(), "rsm gather") == 0, gatherOf(renderer.technique()) != nullptr);
+    return gatherOf(renderer.technique()) != nullptr;
   };
   EXPECT_FALSE(gathers());
   scene.points = {PointLight{glm::dvec3(0.1), glm::vec3(1.0f)}};
@@ -660,9 +664,9 @@ TEST_F(LightsGl, EveryStageOfEveryLightIsTimed) {
   scene.sun = DirectionalLight{{0, -1, 0}, glm::vec3(1.0f)};
   scene.points = {PointLight{glm::dvec3(0.1), glm::vec3(1.0f)}, PointLight{glm::dvec3(-0.1), glm::vec3(1.0f)}};
   scene.spots = {SpotLight{{}, {0, -1, 0}, glm::vec3(1.0f), 0.3, 0.5}};
-  RenderSettings s = settings(Technique::lpv, {32, 32});
-  s.sunCascades.cascades = 2;
-  s.lpv.cascades.cells = 8;
+  RenderSettings s = settings("lpv", {32, 32});
+  s.shadow.cascades.cascades = 2;
+  s.of<LpvSettings>().cascades.cells = 8;
   Renderer renderer(context(), programs(), scene, s);
   for (int i = 0; i < 3; ++i) renderer.render(viewFrom({0, 0, 0.5}, {0, 0, -1}, 1.0));
   renderer.timer().drain();
@@ -679,7 +683,7 @@ TEST_F(LightsGl, EveryStageOfEveryLightIsTimed) {
 /// The sun's visibility in each pixel of a floor y = 0.
 std::vector<double> sunVisibility(const gl::Context& context, gl::ProgramLibrary& programs, const LitScene& scene,
                                   RenderSettings s, int cascades, const Camera& camera) {
-  s.sunCascades.cascades = cascades;
+  s.shadow.cascades.cascades = cascades;
   Renderer renderer(context, programs, scene, s);
   renderer.render(camera);
   const Image image = renderer.readRadiance();
@@ -720,7 +724,7 @@ int partial(const std::vector<double>& visibility) {
 
 TEST_F(LightsGl, CascadesShowTheShadowOfOneMapOnASmallScene) {
   const LitScene scene = columns(1.0, 0.2);
-  const RenderSettings s = settings(Technique::direct, {160, 160});
+  const RenderSettings s = settings("direct", {160, 160});
   const Camera camera = viewFrom({0.1, 0.5, 0.3}, {0, -1, -0.4}, 0.8);
   const auto one = sunVisibility(context(), programs(), scene, s, 1, camera);
   for (const int cascades : {2, 3, 4}) {
@@ -752,7 +756,7 @@ TEST_F(LightsGl, OfManyLampsThoseThatLightTheSceneMostAreDrawn) {
   many.points.insert(many.points.begin(), {{{0.0, 0.0, 0.0}, glm::vec3(0.01f)}, {{0.0, 1e4, 0.0}, glm::vec3(1000.0f)}});
   many.spots.insert(many.spots.begin() + 1, {{{0.0, 1.0, 0.0}, {0.0, -1.0, 0.0}, glm::vec3(0.01f), 0.3, 0.6},
                                              {{0.0, 3.0, 0.0}, {0.0, 1.0, 0.0}, glm::vec3(1000.0f), 0.3, 0.6}});
-  for (const Technique technique : {Technique::direct, Technique::lpv}) {
+  for (const std::string_view technique : {"direct", "lpv"}) {
     const auto picture = [&](const LitScene& scene) {
       Renderer renderer(context(), programs(), scene, settings(technique, {48, 48}));
       renderer.render(viewFrom({0, 1.5, 1.8}, {0, -0.6, -1}, 1.2));
@@ -771,13 +775,13 @@ TEST_F(LightsGl, OfManyLampsThoseThatLightTheSceneMostAreDrawn) {
       mean += static_cast<double>(ofFew.pixels[i].x) / static_cast<double>(ofFew.pixels.size());
     }
     // The volume stores light in a unit that knows all lamps; direct light is the same bit by bit.
-    EXPECT_LE(largest, technique == Technique::direct ? 0.0 : 2e-3 * mean);
+    EXPECT_LE(largest, technique == "direct" ? 0.0 : 2e-3 * mean);
   }
 }
 
 TEST_F(LightsGl, CascadesAreSharperNearTheCameraOfALargeScene) {
   const LitScene scene = columns(200.0, 4.0);
-  const RenderSettings s = settings(Technique::direct, {160, 160});
+  const RenderSettings s = settings("direct", {160, 160});
   const Camera camera = viewFrom({0.3, 5.0, 2.0}, {0, -1, -0.3}, 0.9);
   const int one = partial(sunVisibility(context(), programs(), scene, s, 1, camera));
   const int three = partial(sunVisibility(context(), programs(), scene, s, 3, camera));
@@ -792,7 +796,7 @@ TEST_F(LightsGl, CascadesLeaveNoGapHoweverTheCameraTurns) {
   scene.quad({-200, 0, -200}, {-200, 0, 200}, {200, 0, 200}, {200, 0, -200});
   scene.quad({-250, 30, -250}, {250, 30, -250}, {250, 30, 250}, {-250, 30, 250});  // a roof: below it all is dark
   scene.sun = DirectionalLight{glm::normalize(glm::dvec3(0.1, -1.0, 0.05)), glm::vec3(1.0f)};
-  const RenderSettings s = settings(Technique::direct, {64, 64});
+  const RenderSettings s = settings("direct", {64, 64});
   for (int turn = 0; turn < 12; ++turn) {
     const double a = 0.55 * turn;
     const Camera camera = viewFrom({3.0 * turn, 2.0, -2.0 * turn}, {std::sin(a), -0.2, std::cos(a)}, 0.5);

@@ -1,5 +1,6 @@
 // Light that is reflected several times, and surfels that the camera sees, in the light propagation volume on GL:
 // against the double-precision twin and against what must hold whatever the scene.
+#include "lpv/lpv_frame.hpp"
 #include "support/gl_fixture.hpp"
 #include "support/lpv_on_gl.hpp"
 #include "support/small_scenes.hpp"
@@ -40,8 +41,8 @@ class LpvMoreLight : public test::SharedProgramsTest {
   static LightPropagationVolume run(const LpvSettings& s, const LpvInputs& inputs) {
     return test::runVolume(library(), capabilities(), s, inputs);
   }
-  /// Coloured surfels, off the borders of cells (multiples of 1/4) for axis-aligned normals, so that 32 bits choose the
-  /// twin's cell.
+  /// Coloured surfels, off the borders of cells (multiples of 1/4) for axis-aligned normals, so that 32 bits choose
+  /// the twin's cell.
   static std::vector<RsmTexel> randomTexels(unsigned seed, int count) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
@@ -68,8 +69,8 @@ class LpvMoreLight : public test::SharedProgramsTest {
 
 class LpvBounces : public LpvMoreLight {
  protected:
-  /// A closed box of albedo rho, walls of one surfel a corner in the planes 2 and 8 of 10^3 cells, and one light in it,
-  /// away from the walls.
+  /// A closed box of albedo rho, walls of one surfel a corner in the planes 2 and 8 of 10^3 cells, and one light in
+  /// it, away from the walls.
   static std::vector<RsmTexel> closedBox(float rho) {
     std::vector<RsmTexel> texels{{{0.4f, 0.3f, -0.9f, 1.0f}, {0, 0, 1, 1e30f}, glm::vec3(1.0f, 0.5f, 0.25f)}};
     for (int axis = 0; axis < 3; ++axis)
@@ -148,8 +149,8 @@ TEST_F(LpvBounces, JoinedCascadesBounceAllTheirLight) {
 }
 
 TEST_F(LpvBounces, TheSumOfAllBouncesIsBounded) {
-  // A source of flux S0 in a closed box: S_b <= S0 (1 + rho + ... + rho^(b-1)) for any albedo up to 1, and every front
-  // carries at most the clamp gain times its source, so T <= S (1 + 1.138208 n). More bounces are never darker.
+  // A source of flux S0 in a closed box: S_b <= S0 (1 + rho + ... + rho^(b-1)) for any albedo up to 1, and every
+  // front carries at most the clamp gain times its source, so T <= S (1 + 1.138208 n). More bounces are never darker.
   constexpr int kSteps = 12;
   for (const float rho : {0.0f, 0.5f, 0.99f, 1.0f - 1e-6f}) {
     const std::vector<RsmTexel> texels = closedBox(rho);
@@ -303,19 +304,20 @@ TEST_F(LpvViews, TheCamerasSurfelsHaveTheAreaOfWhatItSees) {
     builder.plate({0.0, 0.0, 0.0}, {4.0, 0.0, 0.0}, 3.0 * glm::dvec3(0.0, std::cos(tilt), std::sin(tilt)), grey);
     builder.sun({0.0, -1.0, -1.0}, glm::vec3(1.0f));
     RenderSettings s;
-    s.technique = Technique::lpv;
+    s.technique = "lpv";
     s.component = Component::indirect;
     s.size = {32, 32};
-    s.lpv.cascades.cells = 16;
-    s.lpv.cascades.cascades = 1;
-    s.lpv.surfels = LpvSurfels::camera;
+    s.of<LpvSettings>().cascades.cells = 16;
+    s.of<LpvSettings>().cascades.cascades = 1;
+    s.of<LpvSettings>().surfels = LpvSurfels::camera;
     Renderer renderer(context(), programs(), builder.scene(), s);
     const Camera camera = test::lookingAt({0.3, 0.2, 8.0}, {0.0, 0.0, 0.0});
     renderer.render(camera);
     const double cell =
-        placeCascades(s.lpv.cascades, builder.scene().bounds, camera.position, camera.direction)[0].cellSize;
+        placeCascades(s.of<LpvSettings>().cascades, builder.scene().bounds, camera.position, camera.direction)[0]
+            .cellSize;
     double area = 0.0;
-    for (const glm::vec4& potential : renderer.lpv()->geometryVolume()->readRgba())
+    for (const glm::vec4& potential : volumeOf(renderer.technique())->geometryVolume()->readRgba())
       area += static_cast<double>(potential.x) / twin::kLobeBand0 * cell * cell;
     report(fmt::format("tilt {}: area seen over the plate's", tilt), area / 12.0);
     EXPECT_NEAR(area / 12.0, 1.0, 0.01);

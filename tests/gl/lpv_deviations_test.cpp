@@ -3,7 +3,8 @@
 //
 // Switches are turned by name, as on the command line. Where the twin has the matching option, the GL is held against
 // it too. Expected values follow from the formulas beside them [Kaplanyan2010; Kirsch2010].
-#include "settings/deviations.hpp"
+#include "render/deviations.hpp"
+#include "rsm/rsm_gather.hpp"
 #include "shared/frame.h"
 #include "support/gl_fixture.hpp"
 #include "support/lpv_on_gl.hpp"
@@ -66,10 +67,10 @@ class LpvDeviations : public test::SharedProgramsTest {
   static LpvSettings with(const LpvSettings& s, const std::string& deviation,
                           LpvPropagate propagate = LpvPropagate::compute) {
     RenderSettings all;
-    all.lpv = s;
-    all.lpv.propagate = propagate;
+    all.of<LpvSettings>() = s;
+    all.of<LpvSettings>().propagate = propagate;
     applyDeviation(all, deviation + "=on");
-    return all.lpv;
+    return all.of<LpvSettings>();
   }
   static RenderSettings with(const std::string& deviation) {
     RenderSettings all;
@@ -647,7 +648,7 @@ TEST_F(LpvDeviations, RsmFluxCosine) {
     const Scene& scene = builder.scene();
     const GpuScene gpuScene(scene, analyse(scene), capabilities());
     const auto flux = [&](const std::string& deviation) {
-      ReflectiveShadowMap::Settings s = with(deviation).rsm;
+      ReflectiveShadowMap::Settings s = with(deviation).of<ReflectiveShadowMap::Settings>();
       s.size = 512;
       ReflectiveShadowMap rsm(library(), gpuScene, s);
       const SunFrustum frustum = fitSunFrustum(scene, scene.sun->direction);
@@ -716,10 +717,10 @@ TEST_F(RsmGatherDeviations, GatherWeight) {
   // Within r = 0.3 of a map of 64 texels there are pi (0.3 * 64)^2, each gives Phi/pi / d^2 to a point straight above.
   // xi^2 for xi leaves 2/3.
   const twin::RsmMap map = mapOfOnePlace(64);
-  RsmGather::Settings right = with("").gather;
+  RsmGather::Settings right = with("").of<RsmGather::Settings>();
   right.samples = 4096;
   right.nearField = RsmGather::Near::none;
-  RsmGather::Settings published = with("rsm.gather-weight").gather;
+  RsmGather::Settings published = with("rsm.gather-weight").of<RsmGather::Settings>();
   published.samples = right.samples;
   published.nearField = right.nearField;
   const double exact = kPi * std::pow(0.3 * 64.0, 2.0) / (kPi * 4.0);
@@ -731,7 +732,8 @@ TEST_F(RsmGatherDeviations, Unbounded) {
   // One texel of area 1 and exitance 1, 0.1 of its side above its middle: the reach holds pi/4 of it. No receiver can
   // get more than the exitance; Phi/pi / d^2 gives 100/pi.
   const twin::RsmMap map = mapOfOnePlace(1);
-  RsmGather::Settings right = with("").gather, published = with("rsm.unbounded").gather;
+  RsmGather::Settings right = with("").of<RsmGather::Settings>(),
+                      published = with("rsm.unbounded").of<RsmGather::Settings>();
   right.radius = published.radius = 0.5f;
   const double bounded = gathered(map, right, {0, 0, 0.1}, {0, 0, -1}) / (kPi / 4.0);
   EXPECT_GT(bounded, 0.9);

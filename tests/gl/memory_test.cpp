@@ -1,6 +1,10 @@
 // Memory: gpuBytes() is what the driver was asked for, and long walks and reloads take no more than short ones.
+#include "irradiance_cache/settings.hpp"
+#include "lpv/settings.hpp"
 #include "pathtracer/path_tracer.hpp"
+#include "radiosity/radiosity_view.hpp"
 #include "render/renderer.hpp"
+#include "rsm/rsm_gather.hpp"
 #include "support/gl_fixture.hpp"
 #include "support/long_tests.hpp"
 #include "support/sanitizers.hpp"
@@ -136,36 +140,35 @@ RenderSettings smallSettings() {
   RenderSettings settings;
   settings.size = {48, 32};
   settings.shadow.size = 128;
-  settings.rsm.size = 32;
+  settings.of<ReflectiveShadowMap::Settings>().size = 32;
   settings.lights.spotSize = settings.lights.pointSize = 32;
-  settings.lpv.cascades.cells = settings.cache.cascades.cells = 8;
-  settings.cache.samples = 16;
-  settings.cache.bounces = 1;
-  settings.radiosity.solution.hemicubes.resolution = 32;
-  settings.radiosity.solution.patches.longestEdge = 6.0;
+  settings.of<LpvSettings>().cascades.cells = settings.of<IrradianceCacheSettings>().cascades.cells = 8;
+  settings.of<IrradianceCacheSettings>().samples = 16;
+  settings.of<IrradianceCacheSettings>().bounces = 1;
+  settings.of<RadiosityView::Settings>().solution.hemicubes.resolution = 32;
+  settings.of<RadiosityView::Settings>().solution.patches.longestEdge = 6.0;
   return settings;
 }
 
 TEST_F(Memory, GpuBytesAreWhatTheDriverWasAskedFor) {
   const Scene lean = test::openBox(), full = everything();
   for (const Scene* scene : {&lean, &full})
-    for (const Technique technique :
-         {Technique::direct, Technique::rsm, Technique::lpv, Technique::irradianceCache, Technique::radiosity})
+    for (const std::string_view technique : {"direct", "rsm", "lpv", "irradiance-cache", "radiosity"})
       for (const CacheTransport transport : {CacheTransport::rays, CacheTransport::gather})
         for (const int cascades : {1, 2}) {
-          const bool isCache = technique == Technique::irradianceCache;
+          const bool isCache = technique == "irradiance-cache";
           if (!isCache && transport != CacheTransport::rays) continue;
-          if (cascades == 2 && (technique == Technique::radiosity || isCache)) continue;
+          if (cascades == 2 && (technique == "radiosity" || isCache)) continue;
           RenderSettings settings = smallSettings();
           settings.technique = technique;
-          settings.cache.transport = transport;
-          settings.sunCascades.cascades = cascades;
-          settings.gather.lowResolution = cascades == 1 ? 4 : 1;
+          settings.of<IrradianceCacheSettings>().transport = transport;
+          settings.shadow.cascades.cascades = cascades;
+          settings.of<RsmGather::Settings>().lowResolution = cascades == 1 ? 4 : 1;
           const Allocations allocations;
           Renderer renderer(context(), programs(), *scene, settings);
           for (int frame = 0; frame < 3; ++frame) renderer.render(test::openBoxCamera());
           EXPECT_EQ(renderer.gpuBytes(), allocations.liveBytes())
-              << nameOf(technique) << " " << nameOf(transport) << " " << cascades << (scene == &full ? " full" : "");
+              << technique << " " << nameOf(transport) << " " << cascades << (scene == &full ? " full" : "");
         }
   for (const Scene* scene : {&lean, &full}) {
     PathTracer::Settings settings;
@@ -217,13 +220,13 @@ void expectFlat(const char* what, int times, const Step& step) {
 TEST_F(Memory, AWalkTakesNoMoreInTheEndThanAtItsBeginning) {
   if (test::kSanitized) GTEST_SKIP() << "a sanitizer allocates, and keeps what was freed";
   const Scene scene = everything();
-  for (const Technique technique : {Technique::irradianceCache, Technique::lpv}) {
+  for (const std::string_view technique : {"irradiance-cache", "lpv"}) {
     RenderSettings settings = smallSettings();
     settings.technique = technique;
     Renderer renderer(context(), programs(), scene, settings);
     std::size_t bytes = 0;
     const int frames = test::longTests() ? 2000 : 80;
-    expectFlat(nameOf(technique).data(), frames, [&](int i) {
+    expectFlat(std::string(technique).c_str(), frames, [&](int i) {
       Camera camera = test::openBoxCamera();
       const double angle = 0.05 * i;
       camera.position += glm::dvec3(std::sin(angle), 0.3 * std::sin(0.7 * angle), std::cos(angle));
@@ -257,7 +260,7 @@ TEST_F(Memory, ReloadedScenesLeaveNothing) {
     const Scene scene = loadScene(file);
     gl::ProgramLibrary library;
     RenderSettings settings = smallSettings();
-    settings.technique = Technique::irradianceCache;
+    settings.technique = "irradiance-cache";
     Renderer renderer(context(), library, scene, settings);
     for (int frame = 0; frame < 3; ++frame) renderer.render(scene.cameras.front());
     renderer.drain();

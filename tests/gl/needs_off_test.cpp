@@ -1,5 +1,9 @@
 // What a scene does not need: no resource of it in any program, none of its bytes, no pass of its name; and leaving it
 // out changes nothing but rounding.
+#include "irradiance_cache/irradiance_cache_frame.hpp"
+#include "irradiance_cache/settings.hpp"
+#include "lpv/lpv_frame.hpp"
+#include "lpv/settings.hpp"
 #include "measure/neutral.hpp"
 #include "render/renderer.hpp"
 #include "support/gl_fixture.hpp"
@@ -41,14 +45,14 @@ class NeedsOff : public test::GlTest {
   static Drawn draw(const Scene& scene) {
     gl::ProgramLibrary library;
     RenderSettings settings;
-    settings.technique = Technique::lpv;
+    settings.technique = "lpv";
     settings.size = {48, 32};
     settings.fullFloatTarget = true;
     settings.shadow.size = 256;
-    settings.rsm.size = 64;
+    settings.of<ReflectiveShadowMap::Settings>().size = 64;
     settings.lights.spotSize = settings.lights.pointSize = 64;
-    settings.lpv.cascades.cells = 8;
-    settings.lpv.blocking =
+    settings.of<LpvSettings>().cascades.cells = 8;
+    settings.of<LpvSettings>().blocking =
         false;  // a lamp however dark adds what it sees to the geometry volume: such data are not neutral there
     Renderer renderer(context(), library, scene, settings);
     renderer.render(test::openBoxCamera());
@@ -124,9 +128,9 @@ TEST_F(NeedsOff, EachTransportLeavesTheOthersStagesOut) {
     bool cache, volume;
     std::size_t gpuBytes;
   };
-  using Way = std::pair<Technique, CacheTransport>;
-  const Way propagate{Technique::lpv, CacheTransport::rays}, rays{Technique::irradianceCache, CacheTransport::rays},
-      gather{Technique::irradianceCache, CacheTransport::gather};
+  using Way = std::pair<std::string_view, CacheTransport>;
+  const Way propagate{"lpv", CacheTransport::rays}, rays{"irradiance-cache", CacheTransport::rays},
+      gather{"irradiance-cache", CacheTransport::gather};
   const auto draw = [](const Way& way, Component component, const Scene& scene, int bounces = 1) {
     gl::ProgramLibrary library;
     RenderSettings settings;
@@ -134,11 +138,11 @@ TEST_F(NeedsOff, EachTransportLeavesTheOthersStagesOut) {
     settings.component = component;
     settings.size = {48, 32};
     settings.shadow.size = 256;
-    settings.rsm.size = 64;
-    settings.lpv.cascades.cells = settings.cache.cascades.cells = 8;
-    settings.cache.transport = way.second;
-    settings.cache.bounces = bounces;
-    settings.cache.samples = 16;
+    settings.of<ReflectiveShadowMap::Settings>().size = 64;
+    settings.of<LpvSettings>().cascades.cells = settings.of<IrradianceCacheSettings>().cascades.cells = 8;
+    settings.of<IrradianceCacheSettings>().transport = way.second;
+    settings.of<IrradianceCacheSettings>().bounces = bounces;
+    settings.of<IrradianceCacheSettings>().samples = 16;
     Renderer renderer(context(), library, scene, settings);
     renderer.renderToTheEnd(test::openBoxCamera());
     Made drawn;
@@ -148,8 +152,8 @@ TEST_F(NeedsOff, EachTransportLeavesTheOthersStagesOut) {
         drawn.programs += program->name() + ":" + resource + "\n";
     for (const gl::StageStatistics& stage : renderer.timer().statistics()) drawn.stages += stage.name + "\n";
     drawn.leftOut = renderer.leftOut();
-    drawn.cache = renderer.irradianceCache() != nullptr;
-    drawn.volume = renderer.lpv() != nullptr;
+    drawn.cache = cacheOf(renderer.technique()) != nullptr;
+    drawn.volume = volumeOf(renderer.technique()) != nullptr;
     drawn.gpuBytes = renderer.gpuBytes();
     return drawn;
   };

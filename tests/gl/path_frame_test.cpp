@@ -1,6 +1,9 @@
 // The path tracer as a technique of the frame: the film's pictures, bit by bit, shown with the frame's own tone
 // mapping; more samples while the view stands still.
+#include "lpv/lpv_frame.hpp"
+#include "pathtracer/path_frame.hpp"
 #include "render/renderer.hpp"
+#include "rsm/rsm_frame.hpp"
 #include "support/path_scenes.hpp"
 
 namespace lucerna {
@@ -14,10 +17,10 @@ class PathFrameGl : public test::PathTest {
  protected:
   static RenderSettings settings(std::uint32_t samples) {
     RenderSettings s;
-    s.technique = Technique::path;
+    s.technique = "path";
     s.size = {24, 16};
     s.fullFloatTarget = true;
-    s.path.samples = samples;
+    s.of<PathSettings>().samples = samples;
     return s;
   }
   /// The same picture by the path tracer alone.
@@ -26,8 +29,8 @@ class PathFrameGl : public test::PathTest {
     PathTracer::Settings path;
     path.size = s.size;
     path.transport = transport;
-    path.seed = s.path.seed;
-    path.bounces = s.path.scatterings;
+    path.seed = s.of<PathSettings>().seed;
+    path.bounces = s.of<PathSettings>().scatterings;
     return tracer(scene, camera, path, samples).mean();
   }
   static void expectSame(const Image& a, const Image& b, const char* what) {
@@ -43,8 +46,8 @@ TEST_F(PathFrameGl, APictureIsThePathTracersAndItsDisplayTheFrames) {
                                              {Component::indirect, Transport::indirect}}) {
     RenderSettings s = settings(6);
     s.component = component;
-    s.path.seed = 3;
-    s.path.scatterings = 4;
+    s.of<PathSettings>().seed = 3;
+    s.of<PathSettings>().scatterings = 4;
     Renderer renderer(context(), library(), scene, s);
     renderer.renderToTheEnd(openBoxCamera());
     EXPECT_TRUE(renderer.isSettled());
@@ -63,7 +66,7 @@ TEST_F(PathFrameGl, GetsBetterWhileTheViewStandsStillAndBeginsAnewWhereItMoves) 
   Renderer renderer(context(), library(), scene, s);
   const Camera other = lookingAt({0.5, 1.0, 11.0}, {0.0, -1.0, 0.0});
   renderer.render(openBoxCamera());
-  EXPECT_GE(renderer.path()->statistics().fewestSamples, 1u);
+  EXPECT_GE(pathOf(renderer.technique())->statistics().fewestSamples, 1u);
   EXPECT_FALSE(renderer.isSettled());
   int frames = 1;
   for (; !renderer.isSettled() && frames < 1000; ++frames) renderer.render(openBoxCamera());
@@ -77,7 +80,7 @@ TEST_F(PathFrameGl, GetsBetterWhileTheViewStandsStillAndBeginsAnewWhereItMoves) 
   expectSame(renderer.readRadiance(), alone(scene, other, s, Transport::all, 16), "another view");
   renderer.forget();
   renderer.render(other);
-  EXPECT_LT(renderer.path()->statistics().fewestSamples, 16u) << "nothing is kept";
+  EXPECT_LT(pathOf(renderer.technique())->statistics().fewestSamples, 16u) << "nothing is kept";
 }
 
 TEST_F(PathFrameGl, AnotherSizeIsAnotherFilm) {
@@ -101,8 +104,8 @@ TEST_F(PathFrameGl, NothingElseIsMade) {
   for (const char* name :
        {"shadow map", "reflective shadow map", "irradiance cache", "light propagation volume", "radiosity"})
     EXPECT_NE(std::find(names.begin(), names.end(), name), names.end()) << name;
-  EXPECT_EQ(renderer.lpv(), nullptr);
-  EXPECT_EQ(renderer.gather(), nullptr);
+  EXPECT_EQ(volumeOf(renderer.technique()), nullptr);
+  EXPECT_EQ(gatherOf(renderer.technique()), nullptr);
 }
 
 }  // namespace

@@ -60,7 +60,7 @@ TEST_F(PathShading, SmoothNormalsAreInterpolatedAndTurnedToTheSideThatIsSeen) {
     settings.transport = Transport::direct;
     const Image traced = tracer(scene, camera, settings, 1).mean();
     RenderSettings forward;
-    forward.technique = Technique::direct;
+    forward.technique = "direct";
     forward.size = glm::ivec2(32);
     forward.fullFloatTarget = true;
     Renderer renderer(context(), library(), scene, forward);
@@ -325,7 +325,7 @@ TEST_F(PathShading, TexturesAndMasksAreReadBetweenTexelCentres) {
   settings.transport = Transport::direct;
   const Image traced = tracer(builder.scene(), camera, settings, 1).mean();
   RenderSettings forward;
-  forward.technique = Technique::direct;
+  forward.technique = "direct";
   forward.size = glm::ivec2(kPixels);
   forward.fullFloatTarget = true;
   forward.textures.anisotropy = 1.0f;  // llvmpipe's anisotropic filter blurs what is magnified, too

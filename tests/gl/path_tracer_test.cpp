@@ -299,7 +299,7 @@ TEST_F(PathTracerTest, DirectLightIsThatOfForwardShading) {
   const Camera camera = openBoxCamera();
   constexpr int kSize = 64;
   RenderSettings forward;
-  forward.technique = Technique::direct;
+  forward.technique = "direct";
   forward.size = glm::ivec2(kSize);
   forward.fullFloatTarget = true;
   Renderer renderer(context(), library(), scene, forward);
@@ -342,7 +342,7 @@ TEST_F(PathTracerTest, DirectLightOfEachKindOfLampIsThatOfForwardShading) {
     if (kind == std::string_view("point")) scene.points.push_back({{-1.0, 1.0, 2.0}, glm::vec3(5.0f, 9.0f, 12.0f)});
     constexpr int kSize = 96;
     RenderSettings forward;
-    forward.technique = Technique::direct;
+    forward.technique = "direct";
     forward.size = glm::ivec2(kSize);
     forward.fullFloatTarget = true;
     Renderer renderer(context(), library(), scene, forward);

@@ -1,5 +1,6 @@
 // Direct light of a radiosity picture by shadow rays in each pixel: against closed forms where nothing is between,
 // against many rays in double where something is; and the parts of the picture add up.
+#include "radiosity/radiosity_view.hpp"
 #include "render/renderer.hpp"
 #include "support/form_factor_twin.hpp"
 #include "support/gl_fixture.hpp"
@@ -23,14 +24,14 @@ class RadiosityDirect : public test::SharedProgramsTest {
                        int size = 48, double unmeasuredIterations = gl::kUnmeasuredIterations,
                        double* largestIterations = nullptr) {
     RenderSettings settings;
-    settings.technique = Technique::radiosity;
+    settings.technique = "radiosity";
     settings.component = component;
     settings.size = {size, size};
     settings.fullFloatTarget = true;
-    settings.radiosity.direct = direct;
-    settings.radiosity.shadowRays = 64;
-    settings.radiosity.solution.hemicubes.resolution = 32;
-    settings.radiosity.solution.patches.longestEdge = 0.8;
+    settings.of<RadiosityView::Settings>().direct = direct;
+    settings.of<RadiosityView::Settings>().shadowRays = 64;
+    settings.of<RadiosityView::Settings>().solution.hemicubes.resolution = 32;
+    settings.of<RadiosityView::Settings>().solution.patches.longestEdge = 0.8;
     settings.unmeasuredIterations = unmeasuredIterations;
     Renderer renderer(context(), library(), scene, settings);
     renderer.render(camera);
@@ -186,12 +187,12 @@ TEST_F(RadiosityDirect, NoBackShowsAtASilhouette) {
     test::addBox(builder, {{x - 0.2, -1, x * x - 0.5}, {x + 0.21, 0.3 * x, x * x - 0.1}}, m);
   builder.scene().sun.reset();
   RenderSettings settings;
-  settings.technique = Technique::radiosity;
+  settings.technique = "radiosity";
   settings.size = {512, 512};
   settings.fullFloatTarget = true;
-  settings.radiosity.direct = RadiosityView::Direct::patches;
-  settings.radiosity.solution.hemicubes.resolution = 16;
-  settings.radiosity.solution.patches.longestEdge = 0.3;
+  settings.of<RadiosityView::Settings>().direct = RadiosityView::Direct::patches;
+  settings.of<RadiosityView::Settings>().solution.hemicubes.resolution = 16;
+  settings.of<RadiosityView::Settings>().solution.patches.longestEdge = 0.3;
   Renderer renderer(context(), library(), builder.scene(), settings);
   int black = 0;
   for (int k = 0; k < 12; ++k) {

@@ -1,5 +1,6 @@
 // The environment's light in radiosity: what is known of floors, walls and boxes under a sky.
 #include "base/angles.hpp"
+#include "radiosity/radiosity_view.hpp"
 #include "render/renderer.hpp"
 #include "support/gl_fixture.hpp"
 #include "support/radiosity_scenes.hpp"
@@ -109,12 +110,12 @@ TEST_F(RadiositySky, TheViewShowsItAsDirectLightByPixelsAndByPatches) {
   for (const auto direct : {RadiosityView::Direct::patches, RadiosityView::Direct::pixels})
     for (const auto component : {Component::all, Component::direct, Component::indirect}) {
       RenderSettings settings;
-      settings.technique = Technique::radiosity;
+      settings.technique = "radiosity";
       settings.component = component;
       settings.size = {8, 8};
       settings.fullFloatTarget = true;
-      settings.radiosity.direct = direct;
-      settings.radiosity.solution = test::wholeTriangles();
+      settings.of<RadiosityView::Settings>().direct = direct;
+      settings.of<RadiosityView::Settings>().solution = test::wholeTriangles();
       Renderer renderer(context(), library(), scene, settings);
       renderer.render(test::lookingAt({0.0, 0.5, 0.01}, {0, 0, 0}, 0.5));
       const glm::vec3 seen = renderer.readRadiance().at(4, 4),

@@ -1,5 +1,8 @@
 // The renderer end to end on small scenes: known radiances, the parts of a picture, what is left out, and what must not
 // change it.
+#include "lpv/lpv_frame.hpp"
+#include "lpv/settings.hpp"
+#include "render/techniques.hpp"
 #include "support/gl_fixture.hpp"
 #include "support/largest_difference.hpp"
 #include "support/small_scenes.hpp"
@@ -26,13 +29,13 @@ class RendererGl : public test::GlTest {
  protected:
   static RenderSettings settings(Component component = Component::all, glm::ivec2 size = {48, 32}) {
     RenderSettings s;
-    s.technique = Technique::lpv;
+    s.technique = "lpv";
     s.component = component;
     s.size = size;
     s.fullFloatTarget = true;
     s.shadow.size = 512;
-    s.lpv.cascades.cells = 16;
-    s.lpv.storage = LpvSettings::Storage::full;
+    s.of<LpvSettings>().cascades.cells = 16;
+    s.of<LpvSettings>().storage = LpvSettings::Storage::full;
     return s;
   }
   Image render(const Scene& scene, const Camera& camera, const RenderSettings& s) {
@@ -124,8 +127,8 @@ TEST_F(RendererGl, AShadowIsBlack) {
   for (const glm::vec3& pixel : lit.pixels) ASSERT_NEAR(pixel.x, 0.5, 5e-4);
 }
 
-// The foot of a wall on the side away from the sun, 0.3 to 1.6 texels of the shadow map (8 / 512) from it. An offset of
-// the stored depth by its slope moves the wall behind these points, which are then lit in full. The filter still
+// The foot of a wall on the side away from the sun, 0.3 to 1.6 texels of the shadow map (8 / 512) from it. An offset
+// of the stored depth by its slope moves the wall behind these points, which are then lit in full. The filter still
 // reaches past the wall.
 TEST_F(RendererGl, NoLightPassesUnderAWall) {
   SceneBuilder builder;
@@ -209,9 +212,9 @@ TEST_F(RendererGl, DirectAloneBuildsNoIndirectStages) {
     const auto left = renderer.leftOut();
     EXPECT_EQ(std::find(left.begin(), left.end(), "reflective shadow map"), left.end());
   }
-  for (const Technique technique : {Technique::direct, Technique::lpv}) {
+  for (const std::string_view technique : {"direct", "lpv"}) {
     gl::ProgramLibrary library;
-    RenderSettings s = settings(technique == Technique::direct ? Component::all : Component::direct);
+    RenderSettings s = settings(technique == "direct" ? Component::all : Component::direct);
     s.technique = technique;
     Renderer renderer(context(), library, scene, s);
     renderer.render(openBoxCamera());
@@ -222,7 +225,7 @@ TEST_F(RendererGl, DirectAloneBuildsNoIndirectStages) {
     for (const auto& stage : renderer.timer().statistics())
       for (const char* unwanted : {"rsm", "injection", "geometry volume", "propagation"})
         EXPECT_NE(stage.name, unwanted);
-    EXPECT_EQ(renderer.lpv(), nullptr);
+    EXPECT_EQ(volumeOf(renderer.technique()), nullptr);
     EXPECT_LT(renderer.gpuBytes(), bytesAll);
     const auto left = renderer.leftOut();
     for (const char* name : {"reflective shadow map", "light propagation volume"})
@@ -284,20 +287,20 @@ TEST_F(RendererGl, GpuBytesIsTheSumOfWhatIsThere) {
   s.fullFloatTarget = false;
   EXPECT_EQ(Renderer(context(), programs(), scene, s).gpuBytes(), geometry + targets - pixels * 8 + shadow + frame);
 
-  // One cascade of 16^3, the result in 16-bit floats, in a buffer and in textures; injected light, two fronts and their
-  // sum in 32, as potentials on corners and faces; of 4^3 bricks three words each after a dispatch's three and their
-  // count.
+  // One cascade of 16^3, the result in 16-bit floats, in a buffer and in textures; injected light, two fronts and
+  // their sum in 32, as potentials on corners and faces; of 4^3 bricks three words each after a dispatch's three and
+  // their count.
   s = settings(Component::indirect);
-  s.lpv.storage = LpvSettings::Storage::half;
-  s.lpv.cascades.cascades = 1;
+  s.of<LpvSettings>().storage = LpvSettings::Storage::half;
+  s.of<LpvSettings>().cascades.cascades = 1;
   const std::size_t cells = 16 * 16 * 16, corners = 17 * 17 * 17;
   const std::size_t rsm = 256 * 256 * (16 + 8 + 16 + 4), bricks = 16 + 3 * 4 * 4 * 4 * 4,
                     lpv = 3 * cells * (8 + 8 + 4 * 16) + bricks + corners * 4 * 16 + sizeof(shared::CascadeConstants);
   EXPECT_EQ(Renderer(context(), programs(), scene, s).gpuBytes(), geometry + targets + frame + rsm + lpv);
-  s.lpv.blocking = false;
+  s.of<LpvSettings>().blocking = false;
   EXPECT_EQ(Renderer(context(), programs(), scene, s).gpuBytes(),
             geometry + targets + frame + rsm + lpv - corners * 4 * 16);
-  s.lpv.iterations = 0;
+  s.of<LpvSettings>().iterations = 0;
   EXPECT_EQ(Renderer(context(), programs(), scene, s).gpuBytes(),
             geometry + targets + frame + rsm + 3 * cells * 16 + sizeof(shared::CascadeConstants));
 }
@@ -335,15 +338,15 @@ TEST_F(RendererGl, IndirectBrightnessHardlyDependsOnCascades) {
   }
   const Camera camera = lookingAt({-0.3, -0.5, 1.6}, {-1.8, -3.0, -1.2}, 1.2);
   // Looked up half a cell before the surface, as published: on the surface itself cells behind it, in the dark, have
-  // half the weight, and how far they reach is up to their size (lpv.lookup=flux there: 1.38 and 1.64 times with 2 and
-  // 3 cascades).
+  // half the weight, and how far they reach is up to their size (lpv.lookup=flux there: 1.38 and 1.64 times with 2
+  // and 3 cascades).
   double one = 0.0;
   Image previous;
   for (int cascades = 1; cascades <= 4; ++cascades) {
     RenderSettings s = settings(Component::indirect, {96, 72});
-    s.lpv.lookup = LpvLookup::published;
-    s.lpv.cascades.cells = 32;
-    s.lpv.cascades.cascades = cascades;
+    s.of<LpvSettings>().lookup = LpvLookup::published;
+    s.of<LpvSettings>().cascades.cells = 32;
+    s.of<LpvSettings>().cascades.cascades = cascades;
     const Image image = render(scene, camera, s);
     const double mean = luminance(image);
     if (cascades == 1) one = mean;
@@ -364,7 +367,7 @@ TEST_F(RendererGl, IndirectBrightnessDoesNotDependOnTheReflectiveShadowMap) {
   double reference = 0.0;
   for (const int size : {256, 64, 128, 512, 1024}) {
     RenderSettings s = settings(Component::indirect, {96, 72});
-    s.rsm.size = size;
+    s.of<ReflectiveShadowMap::Settings>().size = size;
     const double mean = luminance(render(scene, openBoxCamera(), s));
     if (size == 256) reference = mean;
     std::cout << "[ measured ] map of " << size << ": mean indirect radiance over that of 256 " << mean / reference
@@ -376,13 +379,13 @@ TEST_F(RendererGl, IndirectBrightnessDoesNotDependOnTheReflectiveShadowMap) {
 TEST_F(RendererGl, SubCellCameraMotionLeavesTheVolumeBitIdentical) {
   const Scene scene = openBox();
   RenderSettings s = settings();
-  s.lpv.cascades.cellSize = 1.0;
-  s.lpv.cascades.push = 0.0;
+  s.of<LpvSettings>().cascades.cellSize = 1.0;
+  s.of<LpvSettings>().cascades.push = 0.0;
   Renderer renderer(context(), programs(), scene, s);
   const auto volumeAt = [&](const glm::dvec3& camera) {
     renderer.render(lookingAt(camera, {0, 0, -5}));
     std::vector<glm::vec4> all;
-    for (const gl::Texture& channel : renderer.lpv()->result()) {
+    for (const gl::Texture& channel : volumeOf(renderer.technique())->result()) {
       const auto texels = channel.readRgba();
       all.insert(all.end(), texels.begin(), texels.end());
     }
@@ -502,11 +505,10 @@ TEST_F(RendererGl, DisplayPictureIsTheToneMappedOne) {
 }
 
 TEST(RendererNames, ParseAndRefuse) {
-  for (const Technique technique : {Technique::direct, Technique::lpv})
-    EXPECT_EQ(parseName<Technique>(nameOf(technique), ""), technique);
+  for (const std::string_view technique : {"direct", "lpv"}) EXPECT_EQ(techniqueNamed(technique).name, technique);
   for (const Component component : {Component::all, Component::direct, Component::indirect})
     EXPECT_EQ(parseName<Component>(nameOf(component), ""), component);
-  EXPECT_THROW(parseName<Technique>("LPV", ""), Error);
+  EXPECT_THROW(techniqueNamed("LPV"), Error);
   EXPECT_THROW(parseName<Component>("", ""), Error);
 }
 

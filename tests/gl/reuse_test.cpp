@@ -1,6 +1,8 @@
 // What is made once: stages whose inputs have not changed are not run again, and no bit of any picture changes by that.
+#include "irradiance_cache/settings.hpp"
+#include "lpv/settings.hpp"
 #include "render/renderer.hpp"
-#include "settings/deviations.hpp"
+#include "render/deviations.hpp"
 #include "support/gl_fixture.hpp"
 #include "support/small_scenes.hpp"
 
@@ -13,17 +15,17 @@ using test::lookingAt;
 
 class Reuse : public test::SharedProgramsTest {
  protected:
-  static RenderSettings settings(Technique technique) {
+  static RenderSettings settings(std::string_view technique) {
     RenderSettings s;
     s.technique = technique;
     s.size = {48, 32};
     s.fullFloatTarget = true;
-    s.shadow.size = s.rsm.size = 128;
+    s.shadow.size = s.of<ReflectiveShadowMap::Settings>().size = 128;
     s.lights.spotSize = s.lights.pointSize = 128;
-    s.lpv.cascades.cells = s.cache.cascades.cells = 8;
-    s.lpv.cascades.cascades = s.cache.cascades.cascades = 2;
-    s.cache.samples = 64;
-    s.cache.bounces = 1;
+    s.of<LpvSettings>().cascades.cells = s.of<IrradianceCacheSettings>().cascades.cells = 8;
+    s.of<LpvSettings>().cascades.cascades = s.of<IrradianceCacheSettings>().cascades.cascades = 2;
+    s.of<IrradianceCacheSettings>().samples = 64;
+    s.of<IrradianceCacheSettings>().bounces = 1;
     return s;
   }
   /// A sun, a spot and an omnidirectional lamp.
@@ -85,37 +87,36 @@ TEST_F(Reuse, PicturesAreTheSameBitByBitForEachTechnique) {
     RenderSettings settings;
     bool toTheEnd = false;
   };
-  std::vector<Case> cases{
-      {"direct", settings(Technique::direct)}, {"rsm", settings(Technique::rsm)}, {"lpv", settings(Technique::lpv)}};
-  Case sunCascades{"sun cascades", settings(Technique::direct)};
-  sunCascades.settings.sunCascades.cascades = 3;
+  std::vector<Case> cases{{"direct", settings("direct")}, {"rsm", settings("rsm")}, {"lpv", settings("lpv")}};
+  Case sunCascades{"sun cascades", settings("direct")};
+  sunCascades.settings.shadow.cascades.cascades = 3;
   cases.push_back(sunCascades);
   for (const LpvSurfels surfels : {LpvSurfels::camera, LpvSurfels::both}) {
-    Case c{surfels == LpvSurfels::camera ? "lpv, the camera's surfels" : "lpv, all surfels", settings(Technique::lpv)};
-    c.settings.lpv.surfels = surfels;
+    Case c{surfels == LpvSurfels::camera ? "lpv, the camera's surfels" : "lpv, all surfels", settings("lpv")};
+    c.settings.of<LpvSettings>().surfels = surfels;
     cases.push_back(c);
   }
-  Case truncated{"lpv, truncated", settings(Technique::lpv)};
+  Case truncated{"lpv, truncated", settings("lpv")};
   applyDeviation(truncated.settings, "lpv.truncate=on");
   cases.push_back(truncated);
-  Case atomics{"lpv, counted", settings(Technique::lpv)};
-  atomics.settings.lpv.fill = LpvFill::fixed;
-  atomics.settings.lpv.bounces = 2;
+  Case atomics{"lpv, counted", settings("lpv")};
+  atomics.settings.of<LpvSettings>().fill = LpvFill::fixed;
+  atomics.settings.of<LpvSettings>().bounces = 2;
   cases.push_back(atomics);
-  Case original{"original", settings(Technique::lpv)};
+  Case original{"original", settings("lpv")};
   applyFidelity(original.settings, Fidelity::original);
   cases.push_back(original);
   for (const int bounces : {1, IrradianceCacheSettings::kAllBounces}) {
-    Case c{fmt::format("gather, bounces {}", bounces), settings(Technique::irradianceCache)};
-    c.settings.cache.transport = CacheTransport::gather;
-    c.settings.cache.bounces = bounces;
+    Case c{fmt::format("gather, bounces {}", bounces), settings("irradiance-cache")};
+    c.settings.of<IrradianceCacheSettings>().transport = CacheTransport::gather;
+    c.settings.of<IrradianceCacheSettings>().bounces = bounces;
     cases.push_back(c);
   }
   for (const int bounces : {2, IrradianceCacheSettings::kAllBounces})
     for (const bool toTheEnd : {true, false}) {
-      Case c{fmt::format("rays, bounces {}{}", bounces, toTheEnd ? ", settled" : ""),
-             settings(Technique::irradianceCache), toTheEnd};
-      c.settings.cache.bounces = bounces;
+      Case c{fmt::format("rays, bounces {}{}", bounces, toTheEnd ? ", settled" : ""), settings("irradiance-cache"),
+             toTheEnd};
+      c.settings.of<IrradianceCacheSettings>().bounces = bounces;
       cases.push_back(c);
     }
   for (const Case& c : cases)
@@ -126,8 +127,7 @@ TEST_F(Reuse, PicturesAreTheSameBitByBitForEachTechnique) {
 TEST_F(Reuse, AStageRunsWhenItsInputsChangedAndOnlyThen) {
   const Scene scene = room();
   const std::vector<Camera> cameras = path();
-  const Run with = run(scene, settings(Technique::lpv), true, cameras),
-            without = run(scene, settings(Technique::lpv), false, cameras);
+  const Run with = run(scene, settings("lpv"), true, cameras), without = run(scene, settings("lpv"), false, cameras);
   for (const char* once : {"shadow", "spot shadows", "point shadows", "rsm"}) {
     EXPECT_EQ(with.stage(once).ran, 1u) << once;
     EXPECT_EQ(with.stage(once).frames, cameras.size()) << once;
@@ -145,25 +145,25 @@ TEST_F(Reuse, AStageRunsWhenItsInputsChangedAndOnlyThen) {
 
   // Surfels of what the camera sees change with every view, so there the volume is made each frame; the lights' maps
   // are not.
-  RenderSettings s = settings(Technique::lpv);
-  s.lpv.surfels = LpvSurfels::both;
+  RenderSettings s = settings("lpv");
+  s.of<LpvSettings>().surfels = LpvSurfels::both;
   const Run camera = run(scene, s, true, cameras);
   EXPECT_EQ(camera.stage("rsm").ran, 1u);
   EXPECT_EQ(camera.stage("camera surfels").ran, cameras.size());
   EXPECT_EQ(camera.stage("propagation").ran, cameras.size());
   // Cascades of the sun follow the camera.
-  s = settings(Technique::direct);
-  s.sunCascades.cascades = 3;
+  s = settings("direct");
+  s.shadow.cascades.cascades = 3;
   EXPECT_EQ(run(scene, s, true, cameras).stage("shadow").ran, cameras.size());
   // The gather's pixels are the camera's, its map is the sun's.
-  const Run rsm = run(scene, settings(Technique::rsm), true, cameras);
+  const Run rsm = run(scene, settings("rsm"), true, cameras);
   EXPECT_EQ(rsm.stage("rsm").ran, 1u);
   EXPECT_EQ(rsm.stage("gather full").ran, cameras.size());
 }
 
 TEST_F(Reuse, ASettledCacheCostsNothingAndForgettingBeginsAnew) {
   const Scene scene = room();
-  const RenderSettings s = settings(Technique::irradianceCache);
+  const RenderSettings s = settings("irradiance-cache");
   Renderer renderer(context(), library(), scene, s);
   const auto ran = [&](const std::string& name) {
     for (const gl::StageStatistics& stage : renderer.timer().statistics())
@@ -194,7 +194,7 @@ TEST_F(Reuse, ASettledCacheCostsNothingAndForgettingBeginsAnew) {
 
 TEST_F(Reuse, ForgettingDrawsMapsAndVolumeAnew) {
   const Scene scene = room();
-  Renderer renderer(context(), library(), scene, settings(Technique::lpv));
+  Renderer renderer(context(), library(), scene, settings("lpv"));
   for (int i = 0; i < 3; ++i) renderer.render(test::openBoxCamera());
   const Image before = renderer.readRadiance();
   renderer.forget();

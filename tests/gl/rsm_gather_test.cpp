@@ -1,5 +1,7 @@
 // The gather on the GPU: against its CPU twin point by point, and through the renderer on scenes whose answer is known.
 #include "render/renderer.hpp"
+#include "rsm/reflective_shadow_map.hpp"
+#include "rsm/rsm_frame.hpp"
 #include "rsm/rsm_gather.hpp"
 #include "shared/frame.h"
 #include "support/gl_fixture.hpp"
@@ -178,8 +180,8 @@ Scene corner() {
   return scene;
 }
 
-/// Three walls, a floor and two blocks in slanting light, red and green: smooth walls, edges and a background. Lengths
-/// times `scale`.
+/// Three walls, a floor and two blocks in slanting light, red and green: smooth walls, edges and a background.
+/// Lengths times `scale`.
 Scene room(float scale = 1.0f) {
   Scene scene;
   scene.materials.resize(3);
@@ -213,7 +215,7 @@ class RsmRendered : public test::GlTest {
  protected:
   static RenderSettings settings() {
     RenderSettings s;
-    s.technique = Technique::rsm;
+    s.technique = "rsm";
     s.component = Component::indirect;
     s.size = {160, 120};
     s.fullFloatTarget = true;
@@ -228,16 +230,17 @@ class RsmRendered : public test::GlTest {
     Renderer renderer(context(), programs(), scene, s);
     for (int i = 0; i < frames; ++i) renderer.render(scene.cameras.front());
     renderer.drain();
-    return {renderer.readRadiance(), renderer.gather()->irradiance().readRgba(), renderer.gather()->counts()};
+    return {renderer.readRadiance(), gatherOf(renderer.technique())->irradiance().readRgba(),
+            gatherOf(renderer.technique())->counts()};
   }
 };
 
 TEST_F(RsmRendered, TheWallOfACornerHasTheExactIrradiance) {
   const Scene scene = corner();
   RenderSettings s = settings();
-  s.gather.radius = 2.0f;
-  s.gather.samples = 16384;
-  s.gather.interpolate = false;
+  s.of<RsmGather::Settings>().radius = 2.0f;
+  s.of<RsmGather::Settings>().samples = 16384;
+  s.of<RsmGather::Settings>().interpolate = false;
   s.size = {8, 120};
   const Result r = render(scene, s);
   // The wall is 6 away: pixel rows are heights.
@@ -262,15 +265,15 @@ TEST_F(RsmRendered, TheWallOfACornerHasTheExactIrradiance) {
 TEST_F(RsmRendered, InterpolationEqualsTheFullGatherWhereRefusedAndNearlyElsewhere) {
   const Scene scene = room();
   RenderSettings s = settings();
-  s.gather.samples = 2048;  // the pattern's own noise low: interpolation's error alone
-  s.gather.interpolate = false;
+  s.of<RsmGather::Settings>().samples = 2048;  // the pattern's own noise low: interpolation's error alone
+  s.of<RsmGather::Settings>().interpolate = false;
   const Result off = render(scene, s);
-  s.gather.interpolate = true;
-  // Light near a contact changes within the distance to it, so the error is that of steps of 4 and 2 pixels in so small
-  // a picture.
+  s.of<RsmGather::Settings>().interpolate = true;
+  // Light near a contact changes within the distance to it, so the error is that of steps of 4 and 2 pixels in so
+  // small a picture.
   double before = 0.12;
   for (const int step : {4, 2}) {
-    s.gather.lowResolution = step;
+    s.of<RsmGather::Settings>().lowResolution = step;
     const Result on = render(scene, s);
     double square = 0.0, sum = 0.0, count = 0.0;
     std::uint64_t refused = 0, surfaces = 0;
@@ -309,13 +312,14 @@ TEST_F(RsmRendered, InterpolationEqualsTheFullGatherWhereRefusedAndNearlyElsewhe
 TEST_F(RsmRendered, StepOneIsNoInterpolationAndThresholdsRefuse) {
   const Scene scene = room();
   RenderSettings s = settings();
-  s.gather.interpolate = false;
+  s.of<RsmGather::Settings>().interpolate = false;
   const Result off = render(scene, s);
-  s.gather.interpolate = true;
-  s.gather.lowResolution = 1;
+  s.of<RsmGather::Settings>().interpolate = true;
+  s.of<RsmGather::Settings>().lowResolution = 1;
   EXPECT_EQ(render(scene, s).irradiance, off.irradiance);
-  s.gather.lowResolution = 4;
-  s.gather.fitDistance = 0.0f;  // only the sample's own pixel is near enough, and that is one of four: all are refused
+  s.of<RsmGather::Settings>().lowResolution = 4;
+  s.of<RsmGather::Settings>().fitDistance =
+      0.0f;  // only the sample's own pixel is near enough, and that is one of four: all are refused
   const Result none = render(scene, s, 3);
   EXPECT_EQ(none.counts.frames, 3u);
   EXPECT_EQ(none.counts.refused, none.counts.pixels);
@@ -328,8 +332,8 @@ TEST_F(RsmRendered, ASampleFitsOnlyNearThePlaneAndNotFarAway) {
   const Scene scene = room();
   RenderSettings s = settings();
   const auto refused = [&](float plane, float distance) {
-    s.gather.fitPlane = plane;
-    s.gather.fitDistance = distance;
+    s.of<RsmGather::Settings>().fitPlane = plane;
+    s.of<RsmGather::Settings>().fitDistance = distance;
     return render(scene, s).counts.refused;
   };
   const std::uint64_t none = refused(1e6f, 1e6f);
@@ -342,7 +346,7 @@ TEST_F(RsmRendered, OddSizesAndPicturesSmallerThanAStep) {
   for (const glm::ivec2& size : {glm::ivec2(1), glm::ivec2(3, 2), glm::ivec2(37, 5), glm::ivec2(66, 41)}) {
     RenderSettings s = settings();
     s.size = size;
-    s.gather.lowResolution = 7;
+    s.of<RsmGather::Settings>().lowResolution = 7;
     const Result r = render(scene, s);
     for (const glm::vec4& e : r.irradiance) EXPECT_TRUE(std::isfinite(e.x + e.y + e.z) && e.x >= 0.0f);
   }
@@ -350,13 +354,13 @@ TEST_F(RsmRendered, OddSizesAndPicturesSmallerThanAStep) {
 
 TEST_F(RsmRendered, SceneScaleAndMapSizeDoNotChangeTheLight) {
   RenderSettings s = settings();
-  s.gather.samples = 2048;
+  s.of<RsmGather::Settings>().samples = 2048;
   const double reference = luminance(meanOf(render(room(), s).image));
   EXPECT_GT(reference, 0.01);
   for (const float scale : {0.01f, 100.0f})
     EXPECT_NEAR(luminance(meanOf(render(room(scale), s).image)) / reference, 1.0, 1e-3) << scale;
   for (const int size : {64, 128, 512, 1024}) {
-    s.rsm.size = size;
+    s.of<ReflectiveShadowMap::Settings>().size = size;
     EXPECT_NEAR(luminance(meanOf(render(room(), s).image)) / reference, 1.0, 0.05) << size;
   }
 }
@@ -370,7 +374,7 @@ TEST_F(RsmRendered, ComponentsAddUpAndNothingIsBuiltThatIsNotNeeded) {
   s.component = Component::direct;
   Renderer direct(context(), programs(), scene, s);
   direct.render(scene.cameras.front());
-  EXPECT_EQ(direct.gather(), nullptr);
+  EXPECT_EQ(direct.technique(), nullptr);
   const auto leftOut = direct.leftOut();
   EXPECT_NE(std::find(leftOut.begin(), leftOut.end(), "rsm gather"), leftOut.end());
   const Image without = direct.readRadiance();
@@ -384,14 +388,14 @@ TEST_F(RsmRendered, ComponentsAddUpAndNothingIsBuiltThatIsNotNeeded) {
   // Without a light there is nothing to gather.
   Scene night = room();
   night.sun.reset();
-  EXPECT_EQ(Renderer(context(), programs(), night, s).gather(), nullptr);
+  EXPECT_EQ(Renderer(context(), programs(), night, s).technique(), nullptr);
 }
 
 TEST_F(RsmRendered, NoiseAndResizingKeepTheMean) {
   const Scene scene = room();
   RenderSettings s = settings();
   const double reference = luminance(meanOf(render(scene, s).image));
-  s.gather.rotation = RsmGather::Rotation::noise;
+  s.of<RsmGather::Settings>().rotation = RsmGather::Rotation::noise;
   EXPECT_NEAR(luminance(meanOf(render(scene, s).image)) / reference, 1.0, 0.03);
   Renderer renderer(context(), programs(), scene, s);
   renderer.render(scene.cameras.front());
@@ -403,7 +407,7 @@ TEST_F(RsmRendered, NoiseAndResizingKeepTheMean) {
 TEST_F(RsmRendered, RefusedPixelsArePaintedRed) {
   const Scene scene = room();
   RenderSettings s = settings();
-  s.gather.showRefused = true;
+  s.of<RsmGather::Settings>().showRefused = true;
   const Result r = render(scene, s);
   std::uint64_t red = 0;
   for (const glm::vec3& c : r.image.pixels) red += c == glm::vec3(1.0f, 0.0f, 0.0f) ? 1 : 0;

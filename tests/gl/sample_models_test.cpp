@@ -49,7 +49,7 @@ TEST_F(SampleModels, EveryOneThatLoadsShowsSomething) {
     scene->environment.reset();
     scene->background = glm::vec3(0.0f);
     RenderSettings settings;
-    settings.technique = Technique::direct;
+    settings.technique = "direct";
     settings.size = {96, 72};
     Renderer renderer(context(), library(), *scene, settings);
     renderer.render(scene->cameras.front());

@@ -1,6 +1,7 @@
 // Forward shading pixel by pixel against double-precision twins: highlights, the shape of shadow filters, the display
 // curves.
 #include "base/angles.hpp"
+#include "radiosity/radiosity_view.hpp"
 #include "support/gl_fixture.hpp"
 #include "support/pixel_rays.hpp"
 #include "support/radiosity_scenes.hpp"
@@ -29,7 +30,7 @@ constexpr glm::ivec2 kPictureSize{48, 32};
 
 class ShadingValues : public test::SharedProgramsTest {
  protected:
-  static RenderSettings settings(Technique technique = Technique::direct) {
+  static RenderSettings settings(std::string_view technique = "direct") {
     RenderSettings s;
     s.technique = technique;
     s.size = kPictureSize;
@@ -316,11 +317,11 @@ TEST_F(ShadingValues, RadiositysMappingsAreLinearLogarithmicAndFalseColours) {
   Scene scene = stripes();
   for (const Mapping mapping : {Mapping::linear, Mapping::logarithmic, Mapping::falseColours})
     for (const float decades : {4.0f, 6.0f}) {
-      RenderSettings s = settings(Technique::radiosity);
-      s.radiosity.mapping = mapping;
-      s.radiosity.decades = decades;
-      s.radiosity.solution.wholeTriangles = true;
-      s.radiosity.solution.hemicubes.resolution = 16;
+      RenderSettings s = settings("radiosity");
+      s.of<RadiosityView::Settings>().mapping = mapping;
+      s.of<RadiosityView::Settings>().decades = decades;
+      s.of<RadiosityView::Settings>().solution.wholeTriangles = true;
+      s.of<RadiosityView::Settings>().solution.hemicubes.resolution = 16;
       Renderer renderer(context(), library(), scene, s);
       const double exposure = 0.5;
       renderer.setExposure(static_cast<float>(exposure));

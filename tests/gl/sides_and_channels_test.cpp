@@ -1,5 +1,7 @@
 // What must not matter: which side of a face is its front, and which of the three channels light is in. And form
 // factors that a horizon cuts.
+#include "lpv/settings.hpp"
+#include "radiosity/radiosity_view.hpp"
 #include "support/form_factor_twin.hpp"
 #include "support/gl_fixture.hpp"
 #include "support/largest_difference.hpp"
@@ -28,15 +30,15 @@ using test::SceneBuilder;
 
 class SidesAndChannels : public test::SharedProgramsTest {
  protected:
-  static RenderSettings settings(Technique technique) {
+  static RenderSettings settings(std::string_view technique) {
     RenderSettings s;
     s.technique = technique;
     s.size = {32, 24};
     s.fullFloatTarget = true;
     s.shadow.size = 512;
-    s.rsm.size = 64;
-    s.lpv.cascades.cells = 16;
-    s.lpv.storage = LpvSettings::Storage::full;
+    s.of<ReflectiveShadowMap::Settings>().size = 64;
+    s.of<LpvSettings>().cascades.cells = 16;
+    s.of<LpvSettings>().storage = LpvSettings::Storage::full;
     return s;
   }
   static Image render(const Scene& scene, const Camera& camera, const RenderSettings& s) {
@@ -62,14 +64,14 @@ Scene litBox() {
 }
 
 TEST_F(SidesAndChannels, TurningEveryFaceAroundChangesNoPicture) {
-  for (const Technique technique : {Technique::direct, Technique::rsm, Technique::lpv}) {
-    const Scene scene = technique == Technique::rsm ? openBox() : litBox(), turned = turnedAround(scene);
+  for (const std::string_view technique : {"direct", "rsm", "lpv"}) {
+    const Scene scene = technique == "rsm" ? openBox() : litBox(), turned = turnedAround(scene);
     const Image front = render(scene, openBoxCamera(), settings(technique));
     const Image back = render(turned, openBoxCamera(), settings(technique));
     EXPECT_GT(meanOf(front).y, 0.1);
     // The two windings may round differently: places and depths of texels move by a rounding.
-    EXPECT_LT(largestDifference(front, back), (technique == Technique::rsm ? 1e-2 : 2e-3) * meanOf(front).y)
-        << nameOf(technique);
+    EXPECT_LT(largestDifference(front, back), (technique == "rsm" ? 1e-2 : 2e-3) * meanOf(front).y)
+        << technique;
   }
   PathTracer::Settings path;
   path.size = {32, 24};
@@ -91,16 +93,15 @@ TEST_F(SidesAndChannels, LightOfEachChannelIsCarriedAlike) {
     const char* name;
     RenderSettings settings;
   };
-  std::vector<Way> ways{
-      {"direct", settings(Technique::direct)}, {"rsm", settings(Technique::rsm)}, {"lpv", settings(Technique::lpv)}};
+  std::vector<Way> ways{{"direct", settings("direct")}, {"rsm", settings("rsm")}, {"lpv", settings("lpv")}};
   ways.push_back(ways.back());
   ways.back().name = "lpv, 3 bounces";
-  ways.back().settings.lpv.bounces = 3;
+  ways.back().settings.of<LpvSettings>().bounces = 3;
   for (const auto fill : {LpvFill::layered, LpvFill::fixed, LpvFill::atomic})
     for (const auto propagation : {LpvPropagate::layered, LpvPropagate::compute}) {
-      ways.push_back({"lpv, fills and propagations", settings(Technique::lpv)});
-      ways.back().settings.lpv.fill = fill;
-      ways.back().settings.lpv.propagate = propagation;
+      ways.push_back({"lpv, fills and propagations", settings("lpv")});
+      ways.back().settings.of<LpvSettings>().fill = fill;
+      ways.back().settings.of<LpvSettings>().propagate = propagation;
     }
   const auto lit = [&](const glm::vec3& colour) {
     Scene scene = litBox();
@@ -111,9 +112,9 @@ TEST_F(SidesAndChannels, LightOfEachChannelIsCarriedAlike) {
     return scene;
   };
   // The walls lie well within the second of the cascades, which so takes over light of the coarsest.
-  for (Way& way : ways) way.settings.lpv.cascades.spanOfScene = 3.2;
+  for (Way& way : ways) way.settings.of<LpvSettings>().cascades.spanOfScene = 3.2;
   for (const Way& way : ways) {
-    if (way.settings.lpv.fill == LpvFill::atomic && !capabilities().shaderAtomicFloat &&
+    if (way.settings.of<LpvSettings>().fill == LpvFill::atomic && !capabilities().shaderAtomicFloat &&
         !capabilities().shaderAtomicFp16Vector)
       continue;
     const Image white = render(lit(glm::vec3(1.0f)), openBoxCamera(), way.settings);
@@ -178,13 +179,13 @@ TEST_F(SidesAndChannels, FormFactorsOfTrianglesThatTheHorizonCuts) {
 Image radiosityPicture(const gl::Context& context, gl::ProgramLibrary& library, const Scene& scene,
                        const Camera& camera, RadiosityView::Direct direct) {
   RenderSettings settings;
-  settings.technique = Technique::radiosity;
+  settings.technique = "radiosity";
   settings.component = Component::direct;
   settings.size = {16, 16};
   settings.fullFloatTarget = true;
-  settings.radiosity.direct = direct;
-  settings.radiosity.solution.hemicubes.resolution = 16;
-  settings.radiosity.solution.patches.longestEdge = 0.25;
+  settings.of<RadiosityView::Settings>().direct = direct;
+  settings.of<RadiosityView::Settings>().solution.hemicubes.resolution = 16;
+  settings.of<RadiosityView::Settings>().solution.patches.longestEdge = 0.25;
   Renderer renderer(context, library, scene, settings);
   renderer.render(camera);
   return renderer.readRadiance();

@@ -3,7 +3,11 @@
 // in PathTracerTest, RadiosityDirect and Hemicube.
 #include "gl/chunks.hpp"
 #include "irradiance_cache/light_gather.hpp"
+#include "irradiance_cache/settings.hpp"
+#include "lpv/lpv_frame.hpp"
+#include "lpv/settings.hpp"
 #include "render/renderer.hpp"
+#include "rsm/rsm_gather.hpp"
 #include "shared/irradiance_cache.h"
 #include "support/gl_fixture.hpp"
 #include "support/media_scenes.hpp"
@@ -27,8 +31,8 @@ class Submissions : public test::SharedProgramsTest {
   static Drawn drawn(const Scene& scene, RenderSettings settings, double unmeasuredIterations) {
     settings.size = {64, 48};
     settings.fullFloatTarget = true;
-    settings.rsm.size = 64;
-    settings.lpv.cascades.cells = 8;
+    settings.of<ReflectiveShadowMap::Settings>().size = 64;
+    settings.of<LpvSettings>().cascades.cells = 8;
     settings.unmeasuredIterations = unmeasuredIterations;
     Renderer renderer(context(), library(), scene, settings);
     gl::Submission::forget();
@@ -45,7 +49,7 @@ class Submissions : public test::SharedProgramsTest {
     EXPECT_GT(cut.largestIterations, 0.0);
     EXPECT_LE(whole.largestSubmission, kMost);
     EXPECT_LE(cut.largestSubmission,
-              settings.technique == Technique::lpv ? kMost : gl::kMostOverUnmeasured * unmeasuredIterations);
+              settings.technique == "lpv" ? kMost : gl::kMostOverUnmeasured * unmeasuredIterations);
     EXPECT_GE(cut.largestSubmission, cut.largestIterations);
     EXPECT_EQ(cut.picture.pixels, whole.picture.pixels);
     EXPECT_GT(meanOf(whole.picture).x, 0.0);
@@ -89,7 +93,7 @@ TEST_F(Submissions, DirectLight) {
   Scene scene = test::openBox();
   scene.points.push_back({{0.3, 1.5, 0.2}, glm::vec3(2.0f)});
   RenderSettings settings;
-  settings.technique = Technique::direct;
+  settings.technique = "direct";
   expectSameInChunks(scene, settings, 1024.0);
 }
 
@@ -97,11 +101,11 @@ TEST_F(Submissions, GatherFromTheMap) {
   Scene scene = test::openBox();
   scene.points.push_back({{0.3, 1.5, 0.2}, glm::vec3(2.0f)});  // a map more
   RenderSettings settings;
-  settings.technique = Technique::rsm;
-  settings.gather.samples = 64;
-  settings.gather.lowResolution = 2;  // so that each of its passes is cut
+  settings.technique = "rsm";
+  settings.of<RsmGather::Settings>().samples = 64;
+  settings.of<RsmGather::Settings>().lowResolution = 2;  // so that each of its passes is cut
   for (const bool interpolate : {false, true}) {
-    settings.gather.interpolate = interpolate;
+    settings.of<RsmGather::Settings>().interpolate = interpolate;
     expectSameInChunks(scene, settings, 4096.0);
   }
 }
@@ -113,8 +117,8 @@ TEST_F(Submissions, LightShafts) {
   scene.media.push_back(haze);
   scene.cameraMedium = 0;
   RenderSettings settings;
-  settings.technique = Technique::lpv;
-  settings.lpv.shafts = true;
+  settings.technique = "lpv";
+  settings.of<LpvSettings>().shafts = true;
   expectSameInChunks(scene, settings, 65536.0);
 }
 
@@ -124,21 +128,22 @@ TEST_F(Submissions, RoundsAreHandedOverOneByOne) {
   scene.points.push_back({{0.3, 1.5, 0.2}, glm::vec3(2.0f)});
   RenderSettings settings;
   settings.size = {16, 16};
-  settings.cache.rays = 8;
-  settings.cache.samples = 64;
-  settings.lpv.iterations = 128;
-  using Way = std::pair<Technique, CacheTransport>;
+  settings.of<IrradianceCacheSettings>().rays = 8;
+  settings.of<IrradianceCacheSettings>().samples = 64;
+  settings.of<LpvSettings>().iterations = 128;
+  using Way = std::pair<std::string_view, CacheTransport>;
   for (const auto& [technique, transport] :
-       {Way{Technique::irradianceCache, CacheTransport::rays}, Way{Technique::irradianceCache, CacheTransport::gather},
-        Way{Technique::lpv, CacheTransport::rays}}) {
+       {Way{"irradiance-cache", CacheTransport::rays}, Way{"irradiance-cache", CacheTransport::gather},
+        Way{"lpv", CacheTransport::rays}}) {
     settings.technique = technique;
-    settings.cache.transport = transport;
-    settings.cache.bounces = transport == CacheTransport::gather ? IrradianceCacheSettings::kAllBounces : 1;
+    settings.of<IrradianceCacheSettings>().transport = transport;
+    settings.of<IrradianceCacheSettings>().bounces =
+        transport == CacheTransport::gather ? IrradianceCacheSettings::kAllBounces : 1;
     Renderer renderer(context(), library(), scene, settings);
     gl::Submission::forget();
     renderer.renderToTheEnd(test::openBoxCamera());
-    EXPECT_LE(gl::Submission::largest(), kMost) << nameOf(technique) << " " << nameOf(transport);
-    EXPECT_GT(gl::Submission::largest(), 0.25 * kMost) << nameOf(technique) << " " << nameOf(transport);
+    EXPECT_LE(gl::Submission::largest(), kMost) << technique << " " << nameOf(transport);
+    EXPECT_GT(gl::Submission::largest(), 0.25 * kMost) << technique << " " << nameOf(transport);
   }
 }
 
@@ -194,18 +199,19 @@ TEST_F(Submissions, NoLaneGathersForLongerThanIsSaid) {
 // where a submission would be too long.
 TEST_F(Submissions, VolumesAtTheirLargest) {
   RenderSettings settings;
-  settings.lpv.cascades.cells = 128;
-  settings.lpv.cascades.cascades = MAX_CASCADES;
-  settings.rsm.size = 8192;
+  settings.of<LpvSettings>().cascades.cells = 128;
+  settings.of<LpvSettings>().cascades.cascades = MAX_CASCADES;
+  settings.of<ReflectiveShadowMap::Settings>().size = 8192;
   for (const bool hasPoints : {false, true}) EXPECT_LE(LpvFrame::largestIterations(settings, hasPoints), kMost);
   const Scene scene = test::openBox();
   settings = {};
   for (const CacheTransport transport : {CacheTransport::rays, CacheTransport::gather})
     for (const int rays : {1, 8, 64}) {
-      settings.cache.transport = transport;
-      settings.cache.rays = rays;
-      settings.cache.bounces = transport == CacheTransport::gather ? IrradianceCacheSettings::kAllBounces : 1;
-      settings.cache.bounceCells = 64;
+      settings.of<IrradianceCacheSettings>().transport = transport;
+      settings.of<IrradianceCacheSettings>().rays = rays;
+      settings.of<IrradianceCacheSettings>().bounces =
+          transport == CacheTransport::gather ? IrradianceCacheSettings::kAllBounces : 1;
+      settings.of<IrradianceCacheSettings>().bounceCells = 64;
       settings.size = {16, 16};
       const Renderer renderer(context(), library(), scene, settings);
       EXPECT_LE(renderer.largestIterations(), kMost) << rays;

@@ -1,5 +1,7 @@
 // Pictures of normals, of metals and of emission, texel by texel: forward shading, radiosity and the path tracer
 // against what the texels say.
+#include "lpv/settings.hpp"
+#include "radiosity/radiosity_view.hpp"
 #include "support/path_scenes.hpp"
 
 #include "base/angles.hpp"
@@ -18,7 +20,7 @@ namespace {
 
 class SurfaceMaps : public PathTest {
  protected:
-  static Image drawn(const Scene& scene, const Camera& camera, Technique technique = Technique::direct,
+  static Image drawn(const Scene& scene, const Camera& camera, std::string_view technique = "direct",
                      Component component = Component::all) {
     RenderSettings settings;
     settings.technique = technique;
@@ -26,11 +28,11 @@ class SurfaceMaps : public PathTest {
     settings.size = glm::ivec2(16);
     settings.fullFloatTarget = true;
     settings.shadow.size = 256;
-    settings.rsm.size = 64;
-    settings.lpv.cascades.cells = 8;
-    settings.radiosity.direct = RadiosityView::Direct::pixels;
-    settings.radiosity.solution.patches.longestEdge = 12.0;
-    settings.radiosity.solution.hemicubes.resolution = 16;
+    settings.of<ReflectiveShadowMap::Settings>().size = 64;
+    settings.of<LpvSettings>().cascades.cells = 8;
+    settings.of<RadiosityView::Settings>().direct = RadiosityView::Direct::pixels;
+    settings.of<RadiosityView::Settings>().solution.patches.longestEdge = 12.0;
+    settings.of<RadiosityView::Settings>().solution.hemicubes.resolution = 16;
     Renderer renderer(context(), library(), scene, settings);
     renderer.renderToTheEnd(camera);
     return renderer.readRadiance();
@@ -81,7 +83,7 @@ TEST_F(SurfaceMaps, MipmapsAreTheMeanOfWhatAPixelCovers) {
   builder.sun({0, -1, 0}, glm::vec3(2.0f));
   const Camera camera = lookingAt({0, 20, 0}, {0, 0, 0}, 2.0 * std::atan(4.0 / 20.0));
   RenderSettings settings;
-  settings.technique = Technique::direct;
+  settings.technique = "direct";
   settings.size = glm::ivec2(16);
   settings.fullFloatTarget = true;
   settings.shadow.size = 256;
@@ -140,7 +142,7 @@ TEST_F(SurfaceMaps, NormalsLieAlongTheTextureWhicheverWayItLies) {
             ASSERT_NEAR(walked.at(x, y).y, expected, 1e-4) << x << " " << y;
           }
         if (side < 0.0 || scale != 1.0f) continue;  // radiosity's patches have one side
-        const Image solved = drawn(builder.scene(), camera, Technique::radiosity, Component::direct);
+        const Image solved = drawn(builder.scene(), camera, "radiosity", Component::direct);
         EXPECT_NEAR(solved.at(8, 8).y, expected, 1e-4);
       }
 }
@@ -274,10 +276,10 @@ TEST_F(SurfaceMaps, MetalsByTexelsThrowNoDiffuseLight) {
     builder.plate({-2, 2, 0}, {0, 4, 0}, {0, 0, 4}, grey);
     builder.sun({0.0, -1.0, 0.0}, glm::vec3(5.0f));  // along the grey plate
     const Camera camera = lookingAt({3, 1.5, 0}, {-2, 1.0, 0}, 0.3);
-    for (const Technique technique : {Technique::lpv, Technique::rsm}) {
+    for (const std::string_view technique : {"lpv", "rsm"}) {
       const double light = meanOf(drawn(builder.scene(), camera, technique, Component::indirect)).x;
-      if (metallic > 0.0f) EXPECT_EQ(light, 0.0) << static_cast<int>(technique);
-      else EXPECT_GT(light, 0.01) << static_cast<int>(technique);
+      if (metallic > 0.0f) EXPECT_EQ(light, 0.0) << technique;
+      else EXPECT_GT(light, 0.01) << technique;
     }
   }
 }
@@ -307,11 +309,11 @@ TEST_F(SurfaceMaps, EmissionByTexelsShinesByTexelsInEveryTechnique) {
                                                              : glm::dvec3(linear(255), linear(100), linear(0)));
     const glm::dvec3 place(right ? 2.0 : -2.0, 0.0, 0.0);
     const Camera camera = lookingAt(place + glm::dvec3(0, 4, 0), place, 0.1);
-    for (const Technique technique : {Technique::direct, Technique::lpv, Technique::radiosity}) {
+    for (const std::string_view technique : {"direct", "lpv", "radiosity"}) {
       const Image image = drawn(builder.scene(), camera, technique);
       for (int c = 0; c < 3; ++c)
         EXPECT_NEAR(image.at(8, 8)[c], expected[c], kDecoding * expected[c] + 1e-6)
-            << static_cast<int>(technique) << " " << right << " " << c;
+            << technique << " " << right << " " << c;
     }
     const Image walked = traced(builder.scene(), camera);
     for (int c = 0; c < 3; ++c)

@@ -1,5 +1,6 @@
 // Pictures of the embedded scenes, judged by what must hold in them: no golden images, since every rule here is known
 // beforehand.
+#include "lpv/settings.hpp"
 #include "render/renderer.hpp"
 #include "scene/key_frames.hpp"
 #include "support/gl_fixture.hpp"
@@ -21,13 +22,13 @@ class Pictures : public test::GlTest {
   }
   static RenderSettings settings(Component component, glm::ivec2 size = {96, 54}) {
     RenderSettings s;
-    s.technique = Technique::lpv;
+    s.technique = "lpv";
     s.component = component;
     s.size = size;
     s.fullFloatTarget = true;
     s.textures.anisotropy = 1.0f;  // how textures are filtered anisotropically is each driver's own
     s.shadow.size = 512;
-    s.rsm.size = 128;
+    s.of<ReflectiveShadowMap::Settings>().size = 128;
     return s;
   }
 };
@@ -85,9 +86,10 @@ TEST_F(Pictures, ASlowWalkDoesNotFlicker) {
 TEST_F(Pictures, BrightnessDoesNotFollowTheNumberOfCascadesOrTexels) {
   const auto mean = [&](int cascades, int texels) {
     RenderSettings s = settings(Component::indirect);
-    s.lpv.lookup = LpvLookup::published;  // half a cell before surfaces, where cells behind them count nothing
-    s.lpv.cascades.cascades = cascades;
-    s.rsm.size = texels;
+    s.of<LpvSettings>().lookup =
+        LpvLookup::published;  // half a cell before surfaces, where cells behind them count nothing
+    s.of<LpvSettings>().cascades.cascades = cascades;
+    s.of<ReflectiveShadowMap::Settings>().size = texels;
     Renderer renderer(context(), programs(), atrium(), s);
     double sum = 0.0;
     for (const Camera& camera : atrium().cameras) {

@@ -6,7 +6,7 @@
 #include "measure/reference.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "scene/scene.hpp"
-#include "settings/deviations.hpp"
+#include "render/deviations.hpp"
 #include "support/gl_fixture.hpp"
 #include "support/long_tests.hpp"
 #include "support/small_scenes.hpp"
@@ -144,7 +144,7 @@ TEST_F(BenchProof, PathTracingAsPublishedIsBiased) {
     settings.seed = seed;
     RenderSettings published;
     applyFidelity(published, Fidelity::original);
-    if (original) settings.deviations = published.path.deviations;
+    if (original) settings.deviations = published.of<PathSettings>().deviations;
     auto t = std::make_unique<PathTracer>(context(), library(), scene, settings);
     t->setCamera(scene.cameras.front());
     t->record(samples);

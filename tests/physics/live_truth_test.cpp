@@ -41,13 +41,14 @@ class LiveTruth : public SharedProgramsTest {
     const Spline path(readKeyFrames(scene.keyFrames));
     PathTracer live = sampler(scene, 1), truth = sampler(scene, 2);
     Tally tally;
-    for (const Technique technique : {Technique::direct, Technique::rsm, Technique::lpv}) {
+    constexpr std::array<std::string_view, 3> kTechniques{"direct", "rsm", "lpv"};
+    for (std::size_t turn = 0; turn < kTechniques.size(); ++turn) {
       RenderSettings settings;
-      settings.technique = technique;
+      settings.technique = kTechniques[turn];
       settings.size = kSize;
       settings.fullFloatTarget = true;
       Renderer renderer(context(), library(), scene, settings);
-      for (int i = static_cast<int>(technique) % 3; i < views; i += 3) {
+      for (int i = static_cast<int>(turn); i < views; i += 3) {
         const Camera camera = path.view(i * (path.viewCount() - 1) / std::max(views - 1, 1));
         renderer.renderToTheEnd(camera);
         const Image picture = renderer.readRadiance();

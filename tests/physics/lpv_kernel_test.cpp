@@ -5,6 +5,7 @@
 // - After the first clamped step only a lobe along an axis gains nothing more (test LaterStepsClamped).
 // - "cosine" irradiances are <c | lobe(-n)>, pi/4 of our 4/(pi s^2) <c | lobe(-n)>.
 // - Values for the degenerate side directions include the slipped side constant, as in the kernel they are from.
+#include "lpv/settings.hpp"
 #include "support/lpv_twin.hpp"
 
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 // format, lit by a point as there.
 #include "base/data.hpp"
 #include "pathtracer/path_tracer.hpp"
-#include "settings/deviations.hpp"
+#include "render/deviations.hpp"
 #include "support/gl_fixture.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ using namespace test;
 PathDeviations original() {
   RenderSettings settings;
   applyFidelity(settings, Fidelity::original);
-  return settings.path.deviations;
+  return settings.of<PathSettings>().deviations;
 }
 
 class MediaPublished : public SharedProgramsTest {

@@ -1,6 +1,7 @@
 // The deviations' switches: by name, by fidelity, reported, and each with its line in the README.md of its technique.
 #include "base/error.hpp"
-#include "settings/deviations.hpp"
+#include "lpv/settings.hpp"
+#include "render/deviations.hpp"
 
 #include <gtest/gtest.h>
 
@@ -20,7 +21,7 @@ namespace fs = std::filesystem;
 std::vector<std::string> namesInOriginal() {
   std::vector<std::string> names;
   for (const Deviation& deviation : allDeviations())
-    if (deviation.inOriginal) names.emplace_back(deviation.name);
+    if (deviation.inOriginal()) names.emplace_back(deviation.name);
   return names;
 }
 
@@ -71,7 +72,9 @@ TEST(Deviations, EachHasItsLineInTheReadmeOfItsTechnique) {
       EXPECT_EQ(cells.size(), 5u) << line;
       EXPECT_EQ(std::count(cells.begin(), cells.end(), ""), 0) << line;
       // A star: in the text and the program published with it; T: in the text alone, D: in the program alone.
-      const std::string mark = deviation.inOriginal ? deviation.inDemo ? "* " : "T " : deviation.inDemo ? "D " : "";
+      const std::string mark = deviation.inOriginal() ? deviation.inDemo() ? "* " : "T "
+                               : deviation.inDemo()   ? "D "
+                                                      : "";
       for (const char* any : {"* ", "T ", "D "})
         EXPECT_EQ(cells.size() > 1 && cells[1].starts_with(any), mark == any) << line;
     }
@@ -92,11 +95,11 @@ TEST(Deviations, OriginalTurnsOnJustThoseMarkedAndWhatGoesWithThem) {
   EXPECT_EQ(activeDeviations(settings), namesInOriginal());
   EXPECT_FALSE(namesInOriginal().empty());
   EXPECT_LT(namesInOriginal().size(), allDeviations().size());
-  EXPECT_EQ(settings.lpv.propagate, LpvPropagate::layered);
-  EXPECT_EQ(settings.lpv.lookupOffset, 0.0f);
-  EXPECT_EQ(settings.lpv.cascades.ratio, 1.58);
-  EXPECT_EQ(settings.lpv.cascades.spanOfScene, 80.0 / 112.0);
-  EXPECT_FALSE(settings.lpv.cascades.heldInScene);
+  EXPECT_EQ(settings.of<LpvSettings>().propagate, LpvPropagate::layered);
+  EXPECT_EQ(settings.of<LpvSettings>().lookupOffset, 0.0f);
+  EXPECT_EQ(settings.of<LpvSettings>().cascades.ratio, 1.58);
+  EXPECT_EQ(settings.of<LpvSettings>().cascades.spanOfScene, 80.0 / 112.0);
+  EXPECT_FALSE(settings.of<LpvSettings>().cascades.heldInScene);
   // The other way: a deviation that was on before is off.
   RenderSettings turned;
   for (const Deviation& deviation : allDeviations()) deviation.turn(turned, true);

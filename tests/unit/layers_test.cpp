@@ -17,15 +17,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The lines lucerna_layer(NAME LOWER...) of engine/CMakeLists.txt.
+/// The lines lucerna_layer(NAME LOWER...) and lucerna_technique(NAME LOWER...) of engine/CMakeLists.txt.
 std::map<std::string, std::set<std::string>> layers() {
   std::map<std::string, std::set<std::string>> result;
   std::istringstream lines(readFileText(fs::path(LUCERNA_SOURCE_DIR) / "engine/CMakeLists.txt"));
-  const std::regex layer("^lucerna_layer\\(([a-z_ ]+)\\)$");
+  const std::regex layer("^lucerna_(layer|technique)\\(([a-z_ ]+)\\)$");
   for (std::string line; std::getline(lines, line);) {
     std::smatch match;
     if (!std::regex_match(line, match, layer)) continue;
-    std::istringstream words(match[1]);
+    std::istringstream words(match[2].str() + (match[1] == "technique" ? " base scene gl forward frame" : ""));
     std::string name, lower;
     words >> name;
     std::set<std::string>& below = result[name];

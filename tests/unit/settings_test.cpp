@@ -2,11 +2,14 @@
 // refused with what would be right.
 #include "base/error.hpp"
 #include "base/files.hpp"
-#include "settings/settings.hpp"
+#include "irradiance_cache/settings.hpp"
+#include "render/settings.hpp"
+#include "render/techniques.hpp"
 #include "support/temp_folder.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <limits>
@@ -59,8 +62,16 @@ TEST(Settings, KeysAreDistinctAndEveryEntryIsWhole) {
     EXPECT_TRUE(std::regex_match(key, std::regex("exposure|[a-z]+\\.[a-z-]+"))) << key;
     EXPECT_FALSE(setting.meaning.empty()) << key;
     EXPECT_EQ(setting.meaning.find('\n'), std::string_view::npos) << key;
-    EXPECT_NE(setting.readers.techniques, 0u) << key << " is read by nothing";
-    EXPECT_NE(setting.readers.transports & 7u, 0u) << key << " is read by no transport";
+    EXPECT_TRUE(std::ranges::any_of(
+        allTechniques(),
+        [&](const TechniqueEntry& technique) { return readWith(setting, technique.name).has_value(); }))
+        << key << " is read by nothing";
+    if (!setting.with.empty()) {  // it names a value of another setting
+      RenderSettings settings;
+      const SettingAssignment needed = parseAssignment(setting.with);
+      EXPECT_NO_THROW(parseSetting(*needed.setting, settings, needed.value)) << key;
+      EXPECT_EQ(needed.setting->group, setting.group) << key;
+    }
     EXPECT_TRUE(!isNumber(setting) || setting.value.least < setting.value.most) << key;
     EXPECT_TRUE(setting.value.type != SettingType::choice || setting.value.choices.size() > 1) << key;
     EXPECT_FALSE(setting.value.type == SettingType::file ? setting.usually.empty() : defaultValue(setting).empty())
@@ -148,26 +159,24 @@ TEST(Settings, UnknownKeysAreRefusedWithThoseThatThereAre) {
 
 // A technique's settings begin with its name (the irradiance cache's with cache); none reads another's.
 TEST(Settings, AreReadByTheirTechnique) {
-  const std::map<std::string, Technique> owners{{"lpv", Technique::lpv},
-                                                {"cache", Technique::irradianceCache},
-                                                {"radiosity", Technique::radiosity},
-                                                {"path", Technique::path}};
+  const std::map<std::string, std::string_view> owners{
+      {"lpv", "lpv"}, {"cache", "irradiance-cache"}, {"radiosity", "radiosity"}, {"path", "path"}};
   for (const Setting& setting : allSettings()) {
     const auto owner = owners.find(std::string(setting.key.substr(0, setting.key.find('.'))));
-    if (owner != owners.end()) {
-      EXPECT_EQ(onlyTechnique(setting), owner->second) << setting.key;
-    }
+    if (owner != owners.end()) { EXPECT_EQ(onlyTechnique(setting), owner->second) << setting.key; }
   }
   RenderSettings settings;
-  EXPECT_EQ(nameOf(settings.technique), "irradiance-cache");
+  EXPECT_EQ(settings.technique, "irradiance-cache");
   EXPECT_TRUE(isRead(*findSetting("cache.samples"), settings));
-  settings.cache.transport = CacheTransport::gather;
+  settings.of<IrradianceCacheSettings>().transport = CacheTransport::gather;
   EXPECT_FALSE(isRead(*findSetting("cache.samples"), settings));
-  EXPECT_EQ(onlyTransport(*findSetting("cache.samples")), CacheTransport::rays);
-  EXPECT_EQ(onlyTransport(*findSetting("cache.bounce-cells")), CacheTransport::gather);
-  EXPECT_EQ(onlyTransport(*findSetting("cache.cells")), std::nullopt);
-  EXPECT_EQ(onlyTransport(*findSetting("lpv.cells")), std::nullopt);
-  EXPECT_EQ(onlyTechnique(*findSetting("rsm.samples")), Technique::rsm);
+  EXPECT_EQ(readWith(*findSetting("cache.samples"), "irradiance-cache"), "cache.transport=rays");
+  EXPECT_EQ(readWith(*findSetting("cache.bounce-cells"), "irradiance-cache"), "cache.transport=gather");
+  EXPECT_EQ(readWith(*findSetting("cache.cells"), "irradiance-cache"), "");
+  EXPECT_EQ(readWith(*findSetting("cache.cells"), "lpv"), std::nullopt);
+  EXPECT_EQ(readWith(*findSetting("rsm.size"), "irradiance-cache"), "cache.transport=gather");
+  EXPECT_EQ(readWith(*findSetting("rsm.size"), "lpv"), "");
+  EXPECT_EQ(onlyTechnique(*findSetting("rsm.samples")), "rsm");
   EXPECT_EQ(onlyTechnique(*findSetting("rsm.size")), std::nullopt);
 }
 

@@ -12,14 +12,14 @@ namespace {
 
 std::vector<std::string> activeIn(const PathDeviations& deviations) {
   RenderSettings settings;
-  settings.path.deviations = deviations;
+  settings.of<PathSettings>().deviations = deviations;
   return activeDeviations(settings);
 }
 
 TEST(VptEstimators, EachDeviationAloneIsOnOrOff) {
   RenderSettings original;
   applyFidelity(original, Fidelity::original);
-  const std::vector<std::string> published = activeIn(original.path.deviations);
+  const std::vector<std::string> published = activeIn(original.of<PathSettings>().deviations);
   const auto corrected = demo::bench::vptEstimators(Fidelity::corrected),
              asPublished = demo::bench::vptEstimators(Fidelity::original);
   ASSERT_EQ(corrected.size(), 13u);

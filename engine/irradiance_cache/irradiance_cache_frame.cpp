@@ -1,0 +1,117 @@
+#include "irradiance_cache/irradiance_cache_frame.hpp"
+
+#include "base/angles.hpp"
+#include "base/error.hpp"
+
+#include <fmt/format.h>
+
+namespace lucerna {
+
+namespace {
+
+IrradianceCache::Light cachedLight(Component component) {
+  using Light = IrradianceCache::Light;
+  return component == Component::direct     ? Light::direct
+         : component == Component::indirect ? Light::indirect
+                                            : Light::all;
+}
+
+std::optional<LightMaps> lightMaps(const FrameParts& parts) {
+  if (!IrradianceCacheFrame::takesMaps(parts.settings, parts.features)) return {};
+  return std::optional<LightMaps>(std::in_place, parts, false);
+}
+
+}  // namespace
+
+bool IrradianceCacheFrame::isNeeded(const RenderSettings& settings, const SceneFeatures& features) {
+  return IrradianceCache::isNeeded(features, settings.of<IrradianceCacheSettings>(), cachedLight(settings.component));
+}
+
+IrradianceCacheFrame::IrradianceCacheFrame(const FrameParts& parts)
+    : parts_(parts),
+      maps_(lightMaps(parts)),
+      visible_(parts.programs, parts.drawn(), parts.depth),
+      cache_(parts.programs, parts.context.capabilities(), parts.scene, parts.origin, settings(),
+             cachedLight(parts.settings.component)) {}
+
+void IrradianceCacheFrame::resize() {
+  visible_.resize(parts_.depth);
+  clip_ = glm::dmat4(0.0);  // other pixels of the same view see other points
+}
+
+bool IrradianceCacheFrame::record(gl::TimeQuery& timer, const FrameView& view, FrameEffort effort) {
+  cache_.collect();
+  const Camera& volume = view.volumeCamera;
+  const bool sameView =
+      view.clip == clip_ && volume.position == volumePosition_ && volume.direction == volumeDirection_;
+  if (!sameView) {
+    clip_ = view.clip;
+    volumePosition_ = volume.position;
+    volumeDirection_ = volume.direction;
+    since_ = cache_.frame() + 1;
+  }
+  const IrradianceCache::Counts& counts = cache_.counts();
+  settled_ = sameView && counts.frame >= since_ && counts.waiting == 0;
+  if (settled_ && parts_.settings.reuse) return false;
+  const bool mapsAreNew = hasMaps() ? maps_->willBeDrawn() : !parts_.settings.reuse;
+  const std::vector<ReflectiveShadowMap::Outputs> none;
+  const std::vector<ReflectiveShadowMap::Outputs>& maps = maps_ ? maps_->record(timer) : none;
+  {
+    const gl::TimeQuery::Scope stage(timer, "geometry");
+    visible_.record(parts_.drawn(), view.drawn());
+  }
+  const gl::TimeQuery::Scope stage(timer, "irradiance cache");
+  const IrradianceCacheSettings& cache = settings();
+  const int rounds = effort.wholePicture ? (cache.samples + cache.rays - 1) / cache.rays : 1;
+  const glm::dvec2 size(visible_.size());
+  cache_.update({placeCascadesAround(cache.cascades, parts_.drawn().scene().bounds, volume, size.x / size.y),
+                 view.camera, glm::mat4(glm::inverse(view.clip)), visible_, maps, mapsAreNew, effort.fadesIn},
+                rounds);
+  return true;
+}
+
+Image IrradianceCacheFrame::readFromCells(const CascadeSettings& cascades, float blendBand, int paths) const {
+  return cache_.readFromCells(cascades,
+                              placeCascades(cascades, parts_.drawn().scene().bounds, volumePosition_, volumeDirection_),
+                              blendBand, paths);
+}
+
+void IrradianceCacheFrame::forget() {
+  if (maps_) maps_->forget();
+  cache_.forget();
+  settled_ = false;
+  clip_ = glm::dmat4(0.0);
+}
+
+bool IrradianceCacheFrame::lacksLight(std::size_t frames) const {
+  const IrradianceCache::Counts& counts = cache_.counts();
+  if (counts.waiting == 0) return false;
+  if (frames > cache_.mostFrames())
+    throw Error(ErrorKind::fault, fmt::format("internal error: after {} frames {} records of {} still lack light",
+                                              frames, counts.waiting, counts.records));
+  return true;
+}
+
+void IrradianceCacheFrame::addShares(const AskedPixel& pixel, PixelAnswer& answer) {
+  const glm::dvec3 position = answer.surface->position, reflection = answer.surface->albedo / kPi;
+  answer.isFiltered = true;
+  for (const AskedPart& part : cache_.ask(pixel.terms[ASKED_POSITION], pixel.terms[ASKED_MESH_NORMAL])) {
+    const std::string name =
+        fmt::format("record {} {} {} of cascade {}", part.number.x, part.number.y, part.number.z, part.number.w + 1);
+    if (answer.add("irradiance cache", name, reflection * glm::dvec3(part.irradiance),
+                   {position, glm::dvec3(part.place) + parts_.origin}))
+      answer.shares.back().weight = part.weight;
+  }
+}
+
+void IrradianceCacheFrame::addStagePictures(std::vector<StagePicture>& pictures) const {
+  if (maps_) maps_->addStagePictures(pictures);
+  pictures.push_back({StagePicture::Kind::normal, "normals", &visible_.normal()});
+  pictures.push_back({StagePicture::Kind::irradiance, "irradiance cache", &cache_.irradiance()});
+}
+
+void IrradianceCacheFrame::addLeftOut(std::vector<std::string>& names) const {
+  if (!hasMaps()) names.emplace_back("reflective shadow map");
+}
+
+}  // namespace lucerna

@@ -1,0 +1,75 @@
+// Technique irradiance-cache in the frame: irradiance stored at surface points, chosen by camera and grids.
+//
+// Stages, with their inputs: rsm (lights, geometry; only for gather) -> geometry (camera) -> records (maps, visible
+// surfaces, placement of the cascades). A view whose records have all their paths needs no work.
+#pragma once
+
+#include "forward/visible_surfaces.hpp"
+#include "frame/technique.hpp"
+#include "irradiance_cache/irradiance_cache.hpp"
+#include "rsm/light_maps.hpp"
+
+#include <optional>
+
+namespace lucerna {
+
+class IrradianceCacheFrame final : public FrameTechnique {
+ public:
+  static bool isNeeded(const RenderSettings& settings, const SceneFeatures& features);
+  /// Whether it gathers light from the lights' maps.
+  static bool takesMaps(const RenderSettings& settings, const SceneFeatures& features) {
+    return isNeeded(settings, features) && settings.of<IrradianceCacheSettings>().transport == CacheTransport::gather &&
+           settings.component != Component::direct;
+  }
+  explicit IrradianceCacheFrame(const FrameParts& parts);
+
+  std::string surfaceShader() const override { return "irradiance_cache/surface.frag"; }
+  gl::ShaderFlags surfaceFlags() const override { return IrradianceCache::lookupFlags(settings()); }
+  void resize() override;
+  /// Draws depth, unless no work is left for this view.
+  bool record(gl::TimeQuery& timer, const FrameView& view, FrameEffort effort) override;
+  void bindForShading() const override { cache_.bindForLookup(); }
+  void collect(bool wait) override { cache_.collect(wait); }
+  bool isSettled() const override { return settled_; }
+  bool lacksLight(std::size_t frames) const override;
+  void forget() override;
+
+  void addShares(const AskedPixel& pixel, PixelAnswer& answer) override;
+  void addStagePictures(std::vector<StagePicture>& pictures) const override;
+  void addLeftOut(std::vector<std::string>& names) const override;
+  double largestIterations() const override { return cache_.mostIterations(); }
+  double iterationsOfPixel() const override { return 24.0; }
+  std::size_t gpuBytes() const override {
+    return (maps_ ? maps_->gpuBytes() : 0) + visible_.gpuBytes() + cache_.gpuBytes();
+  }
+
+  const IrradianceCache& cache() const { return cache_; }
+  /// Bounds for the last view (IrradianceCache). The first: only with CacheTransport::gather.
+  Image gatheredAtPixels() const {
+    return cache_.gatheredAtPixels(maps_ ? maps_->outputs() : std::vector<ReflectiveShadowMap::Outputs>{});
+  }
+  /// `cascades`: of the cells, blended over `blendBand` (engine/lpv).
+  Image readFromCells(const CascadeSettings& cascades, float blendBand, int paths) const;
+
+ private:
+  bool hasMaps() const { return maps_ && maps_->count() > 0; }
+  const IrradianceCacheSettings& settings() const { return parts_.settings.of<IrradianceCacheSettings>(); }
+
+  FrameParts parts_;
+  std::optional<LightMaps> maps_;  ///< if they use maps
+  VisibleSurfaces visible_;
+  IrradianceCache cache_;
+  /// The view for which they were last updated, the frame of its first update, and whether no work is left.
+  glm::dmat4 clip_{0.0};
+  glm::dvec3 volumePosition_{0.0}, volumeDirection_{0.0};
+  std::uint32_t since_ = 0;
+  bool settled_ = false;
+};
+
+/// Null if the technique is another.
+inline const IrradianceCache* cacheOf(const FrameTechnique* technique) {
+  const auto* frame = dynamic_cast<const IrradianceCacheFrame*>(technique);
+  return frame ? &frame->cache() : nullptr;
+}
+
+}  // namespace lucerna

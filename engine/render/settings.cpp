@@ -1,0 +1,102 @@
+#include "render/settings.hpp"
+
+#include "base/error.hpp"
+#include "render/techniques.hpp"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+namespace lucerna {
+
+namespace {
+
+/// Of shadow maps, textures and the frame: of no single technique.
+std::span<const Setting> sharedSettings() {
+  using namespace setting_values;
+  constexpr auto rebuild = SettingCost::rebuild, uniform = SettingCost::uniform;
+  static const std::vector<Setting> table{
+      {"shadow.size", number(FRAME_FIELD(shadow.size), 1, 16384), "texels",
+       "side of the sun's shadow map, of each cascade", "", rebuild, "", "", "shadows"},
+      {"shadow.cascades", number(FRAME_FIELD(shadow.cascades.cascades), 1, SUN_MAX_CASCADES), "",
+       "shadow maps of the sun along the view; 1: one for the whole scene", "[Zhang2006]", rebuild, "", "", "shadows"},
+      {"shadow.split", number(FRAME_FIELD(shadow.cascades.split), 0.0, 1.0), "",
+       "how cascades divide the view's depth: 0 uniformly, 1 logarithmically", "[Zhang2006, section 3.2]", rebuild, "",
+       "", "shadows"},
+      {"shadow.spot-size", number(FRAME_FIELD(lights.spotSize), 1, 16384), "texels",
+       "side of a spot light's shadow map", "", rebuild, "", "", "shadows"},
+      {"shadow.point-size", number(FRAME_FIELD(lights.pointSize), 1, 16384), "texels",
+       "side of each face of an omnidirectional light's shadow map", "", rebuild, "", "", "shadows"},
+      {"texture.anisotropy", number(FRAME_FIELD(textures.anisotropy), 1.0, 16.0), "",
+       "anisotropic filtering of what is seen, at most; 1 without mipmaps", "", rebuild, "", "", "textures"},
+      {"texture.mipmaps", boolean(FRAME_FIELD(textures.mipmaps)), "",
+       "textures in smaller versions with distance; off: they flicker", "[LPV2015]", rebuild, "", "", "textures"},
+      {"frame.reuse", boolean(FRAME_FIELD(reuse)), "",
+       "reuse unchanged results of the previous frame: maps, volume, cache", "", uniform, "", "", "textures"},
+      {"exposure", optionalNumber(FRAME_FIELD(exposure), 1e-12, 1e12), "", "multiplies radiance before tone mapping",
+       "", uniform, "", "auto: the scene's", "all"},
+  };
+  return table;
+}
+
+}  // namespace
+
+const std::vector<Setting>& allSettings() {
+  static std::vector<Setting> all;
+  static std::size_t techniques = 0;
+  if (techniques == allTechniques().size()) return all;
+  techniques = allTechniques().size();
+  all.clear();
+  for (const TechniqueEntry& technique : allTechniques())
+    for (Setting setting : technique.settings) {
+      if (setting.group.empty()) setting.group = technique.name;
+      all.push_back(setting);
+    }
+  const auto shared = sharedSettings();
+  all.insert(all.end(), shared.begin(), shared.end());
+  return all;
+}
+
+const Setting* findSetting(std::string_view key) {
+  const auto found =
+      std::find_if(allSettings().begin(), allSettings().end(), [&](const Setting& s) { return s.key == key; });
+  return found == allSettings().end() ? nullptr : &*found;
+}
+
+SettingAssignment parseAssignment(std::string_view assignment, std::string_view where, const SettingCost* only) {
+  const auto equals = assignment.find('=');
+  if (equals == std::string_view::npos || equals == 0) throwBadInput("{}{}: expected key=value", where, assignment);
+  const Setting* setting = findSetting(assignment.substr(0, equals));
+  if (setting && (!only || setting->cost == *only)) return {setting, std::string(assignment.substr(equals + 1))};
+  std::vector<std::string_view> keys;
+  for (const Setting& s : allSettings())
+    if (!only || s.cost == *only) keys.push_back(s.key);
+  throwBadInput("{}{}: unknown key; expected one of {}", where, assignment, fmt::join(keys, ", "));
+}
+
+std::optional<std::string_view> readWith(const Setting& setting, std::string_view technique) {
+  if (setting.group == "all") return "";
+  if (setting.group == technique) return setting.with;
+  for (const TechniqueEntry::Shared& shared : techniqueNamed(technique).reads)
+    if (shared.group == setting.group) return shared.with;
+  return {};
+}
+
+bool isRead(const Setting& setting, const RenderSettings& settings) {
+  const auto with = readWith(setting, settings.technique);
+  if (!with || with->empty()) return with.has_value();
+  const SettingAssignment needed = parseAssignment(*with);
+  return printSetting(*needed.setting, settings) == needed.value;
+}
+
+std::optional<std::string_view> onlyTechnique(const Setting& setting) {
+  std::optional<std::string_view> only;
+  for (const TechniqueEntry& technique : allTechniques()) {
+    if (!readWith(setting, technique.name)) continue;
+    if (only) return {};
+    only = technique.name;
+  }
+  return only;
+}
+
+}  // namespace lucerna

@@ -1,0 +1,51 @@
+#include "rsm/light_maps.hpp"
+
+#include <algorithm>
+
+namespace lucerna {
+
+LightMaps::LightMaps(const FrameParts& parts, bool albedo) : parts_(parts) {
+  using Light = ReflectiveShadowMap::Light;
+  const auto add = [&](Light light) {
+    auto settings = parts.settings.of<ReflectiveShadowMap::Settings>();
+    settings.light = light;
+    settings.albedo = albedo;
+    if (light == Light::point) settings.size = std::max(settings.size / 2, 1);
+    maps_.emplace_back(parts.programs, parts.drawn(), settings);
+  };
+  if (parts.features.directionalLight) add(Light::sun);
+  for (std::size_t i = 0; i < parts.spots.size(); ++i) add(Light::spot);
+  for (std::size_t i = 0; i < parts.points.size(); ++i) add(Light::point);
+}
+
+const std::vector<ReflectiveShadowMap::Outputs>& LightMaps::record(gl::TimeQuery& timer) {
+  if (maps_.empty() || !willBeDrawn()) return outputs_;
+  const gl::TimeQuery::Scope stage(timer, "rsm");
+  outputs_.clear();
+  auto spot = parts_.spots.begin(), point = parts_.points.begin();
+  for (ReflectiveShadowMap& map : maps_) switch (map.light()) {
+      case ReflectiveShadowMap::Light::sun: outputs_.push_back(map.record(parts_.drawn(), parts_.sun)); break;
+      case ReflectiveShadowMap::Light::spot: outputs_.push_back(map.record(parts_.drawn(), *spot++)); break;
+      case ReflectiveShadowMap::Light::point: outputs_.push_back(map.record(parts_.drawn(), *point++)); break;
+    }
+  made_ = true;
+  return outputs_;
+}
+
+void LightMaps::addStagePictures(std::vector<StagePicture>& pictures) const {
+  using Kind = StagePicture::Kind;
+  for (std::size_t i = 0; i < outputs_.size(); ++i) {
+    const std::string name = "rsm " + std::to_string(i + 1) + " ";
+    pictures.push_back({Kind::flux, name + "flux", &outputs_[i].flux});
+    pictures.push_back({Kind::normal, name + "normal", &outputs_[i].normal});
+    pictures.push_back({Kind::position, name + "position", &outputs_[i].position});
+  }
+}
+
+std::size_t LightMaps::gpuBytes() const {
+  std::size_t bytes = 0;
+  for (const ReflectiveShadowMap& map : maps_) bytes += map.gpuBytes();
+  return bytes;
+}
+
+}  // namespace lucerna

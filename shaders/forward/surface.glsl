@@ -1,0 +1,137 @@
+// Forward shading of surfaces: direct light of the sun, spot and omnidirectional lights with filtered shadow maps;
+// emission; what the frame's technique adds.
+// Output: radiance, linear, scene units. Lambert: L = albedo / pi * E. Specular: Blinn-Phong, normalised so that its
+// energy does not depend on the exponent, (n + 8) / (8 pi) [AkenineMoller2018, section 9.8].
+//
+// A technique's own fragment shader (shaders/NAME/surface.frag) includes this file last. It defines before:
+//   #define INDIRECT 1   or 0, and then not the function
+//   vec3 indirectIrradiance(vec3 position, vec3 normal, vec3 meshNormal)   W per square scene unit
+// normal: for shading, possibly normal-mapped; meshNormal: the mesh's own; both on the viewer's side. And with a flag:
+//   INDIRECT_SPECULAR: vec3 indirectSpecular(position, normal, toCamera, albedo, specular, shininess)   radiance
+//   SHOW_REFUSED: bool indirectIsRefused()   whether to paint the pixel red
+#include "lib/frame.glsl"
+#include "lib/sh.glsl"
+#include "lib/material.glsl"
+#include "shared/asked.h"
+#if ASKED
+#include "forward/asked.glsl"
+#endif
+
+in vec3 vPosition;
+in vec3 vNormal;
+in vec2 vTexCoord;
+layout(location = 0) out vec4 radiance;
+
+#if SUN
+#include "forward/sun_shadow.glsl"
+#endif
+#if SPOTS || POINTS
+#include "forward/lights.glsl"
+#endif
+
+#if SPECULAR || INDIRECT_SPECULAR
+#include "lib/highlight.glsl"
+Highlight highlight;
+#endif
+#if EMISSION
+#include "lib/emission.glsl"
+#endif
+#if HAZE
+#include "lib/haze.glsl"
+#endif
+
+// BRDF value: reflected radiance per irradiance.
+vec3 reflection(vec3 albedo, vec3 normal, vec3 toCamera, vec3 toLight) {
+  vec3 reflected = albedo / kPi;
+#if SPECULAR
+  vec3 halfway = normalize(toCamera + toLight);
+  reflected += highlight.specular *
+               ((highlight.shininess + 8.0) / (8.0 * kPi) * pow(max(dot(normal, halfway), 0.0), highlight.shininess));
+#endif
+  return reflected;
+}
+
+// Adds one term of the radiance; the queried pixel also records it.
+void add(inout vec3 result, vec3 radiance, int term) {
+  result += radiance;
+#if ASKED
+  record(term, vec4(radiance, 0.0));
+#endif
+}
+
+void main() {
+  vec3 albedo = materialAlbedo(vTexCoord), mapped = materialNormal(vNormal, vPosition, vTexCoord);
+#if SPECULAR || INDIRECT_SPECULAR
+  highlight = materialHighlight(vTexCoord);
+#endif
+#if EMISSION
+  vec3 emitted = materialEmitted(vTexCoord);
+#endif
+#if SUN
+  vec3 face = cross(normalize(dFdx(vPosition)), normalize(dFdy(vPosition)));  // the triangle's own normal
+#endif
+  bool isCutOut = materialCutOut(vTexCoord);  // discarded last: lights take derivatives
+#if ASKED
+  isVisible = !isCutOut;
+#endif
+  vec3 toCamera = normalize(frame.cameraPosition - vPosition);
+  // Surfaces are two-sided. The geometric side of the face, not the interpolated normal, decides whether to flip the
+  // normal towards the viewer.
+  vec3 meshNormal = normalize(gl_FrontFacing ? vNormal : -vNormal);
+  vec3 normal = meshNormal;
+#if NORMAL_MAPS
+  normal = normalize(gl_FrontFacing ? mapped : -mapped);
+#endif
+  vec3 result = vec3(0.0);
+#if SUN
+  float cosine = dot(normal, -frame.sunDirection);
+  if (cosine > 0.0) {
+    face = dot(face, face) > 1e-12 ? normalize(dot(face, toCamera) > 0.0 ? face : -face) : meshNormal;
+    vec3 irradiance = frame.sunIrradiance * (cosine * sunVisibility(vPosition, face));
+#if HAZE
+    irradiance *= hazeTransmittance(vPosition, -frame.sunDirection);
+#endif
+    add(result, reflection(albedo, normal, toCamera, -frame.sunDirection) * irradiance, ASKED_SUN);
+  }
+#endif
+#if SPOTS
+  for (int i = 0; i < SPOTS; ++i) {
+    Arriving light = spotLight(i, vPosition, normal, meshNormal);
+    if (light.cosine > 0.0)
+      add(result, reflection(albedo, normal, toCamera, light.toLight) * light.irradiance, ASKED_SPOTS + i);
+  }
+#endif
+#if POINTS
+  for (int i = 0; i < POINTS; ++i) {
+    Arriving light = pointLight(i, vPosition, normal, meshNormal);
+    if (light.cosine > 0.0)
+      add(result, reflection(albedo, normal, toCamera, light.toLight) * light.irradiance, ASKED_POINTS + i);
+  }
+#endif
+#if INDIRECT
+  vec3 indirect = indirectIrradiance(vPosition, normal, meshNormal);
+  result += albedo / kPi * indirect;
+#endif
+#if INDIRECT_SPECULAR
+  add(result, indirectSpecular(vPosition, normal, toCamera, albedo, highlight.specular, highlight.shininess),
+      ASKED_GLOSSY);
+#endif
+#if EMISSION
+  add(result, emitted, ASKED_EMISSION);
+#endif
+#if ASKED
+  record(ASKED_POSITION, vec4(vPosition, 1.0));
+  record(ASKED_NORMAL, vec4(normal, 0.0));
+  record(ASKED_MESH_NORMAL, vec4(meshNormal, 0.0));
+  record(ASKED_ALBEDO, vec4(albedo, 0.0));
+  record(ASKED_RADIANCE, vec4(result, 0.0));
+#if INDIRECT
+  record(ASKED_INDIRECT, vec4(indirect, 0.0));
+#endif
+#endif
+#if SHOW_REFUSED
+  if (indirectIsRefused()) result = vec3(1.0, 0.0, 0.0) / frame.exposure;
+#endif
+  radiance = vec4(result, 1.0);
+  if (isCutOut) discard;
+}
