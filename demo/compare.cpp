@@ -1,4 +1,4 @@
-// lucerna compare A B: errors of A with B as the truth, with heat maps on request.
+// lucerna compare A B: errors of A with B as the reference, with heat maps on request.
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "shared/contact_sheet.hpp"

@@ -221,8 +221,8 @@ function frontOf(rows, cost, metric) {
     !isBelow(p.cost, p.costSpread, q.cost, q.costSpread));
   return kept.filter(p => !isBeaten(p)).map(p => p.index);
 }
-/// Error of a series at a cost: log-log between the two rungs around it. {value, spread, interpolated}, or null outside
-/// of the ladder.
+/// Error of a series at a cost: log-log between the points around it. {value, spread, interpolated}, or null outside
+/// of the sweep.
 function errorAt(points, cost) {
   for (let i = 0; i < points.length; ++i) {
     const a = points[i];
@@ -236,7 +236,7 @@ function errorAt(points, cost) {
   }
   return null;
 }
-/// Cost at which a series first gets down to an error: the rung, or log-log between the rungs around it.
+/// Cost at which a series first gets down to an error: the point, or log-log between the points around it.
 function costAt(points, error) {
   for (let i = 0; i < points.length; ++i) {
     const b = points[i], a = points[i - 1];
@@ -338,15 +338,15 @@ class Figure {
     this.planes = {};
     for (const element of root.querySelectorAll('script[data-plane]')) this.planes[element.dataset.plane] = element;
     // 0, -1, ...: the references, by one of which each method is judged. From 1 on, methods: the front from its
-    // fastest on, then the best of each ladder, then the others, in the order of the ladders.
+    // fastest on, then the best of each sweep, then the others, in the order of the sweeps.
     const pictures = this.facts.pictures, rowOf = i => this.rows[pictures[i].row];
     const all = [...pictures.keys()];
     const front = all.filter(i => rowOf(i).pareto).sort((a, b) => rowOf(a).front - rowOf(b).front);
     const others = all.filter(i => !front.includes(i));
     const rest = [true, false].flatMap(first => others.filter(i => pictures[i].first_choice === first));
-    const itemOf = i => ({picture: i, row: pictures[i].row, truth: pictures[i].truth});
+    const itemOf = i => ({picture: i, row: pictures[i].row, reference: pictures[i].reference});
     this.items = [null, ...front.concat(rest).map(itemOf)];
-    this.order = [...this.facts.truths.map((truth, t) => 0 - t), ...[...this.items.keys()].slice(1)];
+    this.order = [...this.facts.references.map((reference, t) => 0 - t), ...[...this.items.keys()].slice(1)];
     this.seriesNames = [...new Set(this.rows.map(r => r.series))];
     this.state = {
       current: Math.min(1, this.items.length - 1), before: 0, mode: 'single', flipped: false, chosen: [],
@@ -366,9 +366,9 @@ class Figure {
     this.draw();
   }
 
-  label(i) { return i <= 0 ? this.facts.truths[-i].name : this.rows[this.items[i].row].label; }
+  label(i) { return i <= 0 ? this.facts.references[-i].name : this.rows[this.items[i].row].label; }
   /// The reference that a method is judged by; of a reference, itself.
-  judgeOf(i) { return i <= 0 ? i : 0 - this.items[i].truth; }
+  judgeOf(i) { return i <= 0 ? i : 0 - this.items[i].reference; }
   style(series) {
     const i = this.seriesNames.indexOf(series);
     const round = Math.floor(i / PALETTE.length);
@@ -388,9 +388,9 @@ class Figure {
     const digits = this.text(name).slice(4 * Math.floor(first / 3), 4 * Math.ceil((first + count) / 3));
     return bytesOf(digits).slice(first % 3, first % 3 + count);
   }
-  truth(t) { return this.once('truth' + t, () => new Float32Array(this.bytes('r' + t).buffer)); }
-  truthError(t) {
-    const scale = this.facts.truths[t].error_scale;
+  reference(t) { return this.once('reference' + t, () => new Float32Array(this.bytes('r' + t).buffer)); }
+  referenceError(t) {
+    const scale = this.facts.references[t].error_scale;
     return scale === null ? null : this.once('error' + t, () => halves(this.bytes(`r${t}e`), scale));
   }
   /// Pictures that found no room are means over blocks of pixels: their values, for each pixel.
@@ -431,19 +431,19 @@ class Figure {
     return p.flip ? this.once('flip' + i, () => this.spread(this.bytes(plane), p.block, 1)) : null;
   }
   /// The reference of a method, and its standard error, in the method's blocks.
-  truthOf(i) {
-    const t = this.items[i].truth, block = this.picture(i).block;
-    if (block === 1) return this.truth(t);
-    return this.once(`truth ${t} by ${block}`, () => this.blocks(this.truth(t), block, false));
+  referenceOf(i) {
+    const t = this.items[i].reference, block = this.picture(i).block;
+    if (block === 1) return this.reference(t);
+    return this.once(`reference ${t} by ${block}`, () => this.blocks(this.reference(t), block, false));
   }
-  truthErrorOf(i) {
-    const t = this.items[i].truth, block = this.picture(i).block, e = this.truthError(t);
+  referenceErrorOf(i) {
+    const t = this.items[i].reference, block = this.picture(i).block, e = this.referenceError(t);
     return block === 1 || !e ? e : this.once(`error ${t} by ${block}`, () => this.blocks(e, block, true));
   }
   pixels(i) {
-    if (i <= 0) return this.truth(-i);
+    if (i <= 0) return this.reference(-i);
     return this.once('pixels' + i, () => {
-      const d = this.difference(i), t = this.truthOf(i), result = new Float32Array(d.length);
+      const d = this.difference(i), t = this.referenceOf(i), result = new Float32Array(d.length);
       for (let k = 0; k < d.length; ++k) result[k] = this.sum(t[k], d[k]);
       return result;
     });
@@ -456,7 +456,7 @@ class Figure {
     switch (map) {
       case 'signed': return d;
       case 'relative': {
-        const mean = this.meanLuminance(this.items[i].truth);
+        const mean = this.meanLuminance(this.items[i].reference);
         return d / Math.sqrt(t ** 2 + this.facts.relmse_epsilon * mean ** 2);
       }
       case 'flip': return flip;
@@ -470,8 +470,8 @@ class Figure {
     return NaN;
   }
   mapValue(i, map, k) {
-    const e = this.truthErrorOf(i), own = this.ownError(i), f = this.flipMap(i);
-    const d = luminance(this.difference(i), k), t = luminance(this.truthOf(i), k);
+    const e = this.referenceErrorOf(i), own = this.ownError(i), f = this.flipMap(i);
+    const d = luminance(this.difference(i), k), t = luminance(this.referenceOf(i), k);
     return this.mapOf(i, map, d, t, e && luminance(e, k), own ? luminance(own, k) : 0, f ? f[k] / 255 : NaN);
   }
   /// A pixel of a method that may not be decoded yet: its values, and those of all maps.
@@ -479,7 +479,7 @@ class Figure {
     const p = this.picture(i), name = 'p' + this.items[i].picture, x = k % this.width, y = Math.floor(k / this.width);
     const at = Math.floor(y / p.block) * Math.ceil(this.width / p.block) + Math.floor(x / p.block);
     const three = (plane, scale) => halves(this.bytesAt(plane, 6 * at, 6), scale);
-    const d = three(name, p.scale), t = this.truthOf(i), e = this.truthErrorOf(i);
+    const d = three(name, p.scale), t = this.referenceOf(i), e = this.referenceErrorOf(i);
     const own = p.error_scale === null ? 0 : luminance(three(name + 'e', p.error_scale), 0);
     const flip = p.flip ? this.bytesAt(name + 'f', at, 1)[0] / 255 : NaN;
     const result = {values: Array.from(d, (v, c) => this.sum(t[3 * k + c], v))};
@@ -489,7 +489,7 @@ class Figure {
   }
   meanLuminance(t) {
     return this.once('mean' + t, () => {
-      const p = this.truth(t);
+      const p = this.reference(t);
       let sum = 0;
       for (let k = 0; k < this.width * this.height; ++k) sum += luminance(p, k);
       return sum / (this.width * this.height);
@@ -861,9 +861,9 @@ class Figure {
     const columns = [`pixel ${x}, ${y}`, 'R', 'G', 'B', 'luminance', 'difference', 'relative', 'z-score', 'FLIP'];
     const none = '<td></td><td></td><td></td><td></td>';
     let html = `<table><tr>${columns.map(c => `<th>${c}</th>`).join('')}</tr>`;
-    this.facts.truths.forEach((truth, i) => {
-      const p = this.truth(i), error = this.truthError(i);
-      html += `<tr class="marked"><td>${escapeText(truth.name)}</td>${three(p)}` +
+    this.facts.references.forEach((reference, i) => {
+      const p = this.reference(i), error = this.referenceError(i);
+      html += `<tr class="marked"><td>${escapeText(reference.name)}</td>${three(p)}` +
         `<td>${short(luminance(p, k), 5)}</td>${none}</tr>`;
       if (!error) return;
       html += `<tr><td>its standard error</td>${three(error)}<td>${short(luminance(error, k), 3)}</td>${none}</tr>`;
@@ -1009,14 +1009,14 @@ class Figure {
   shownSeries() {
     return this.seriesNames.map(name => ({name, points: this.seriesPoints(name)})).filter(s => s.points.length);
   }
-  /// Errors to compare with: yardsticks, and what the reference can tell at all.
+  /// Errors to compare with: baselines, and what the reference can tell at all.
   plotLevels(metric) {
     const levels = [];
-    for (const y of this.facts.yardsticks || []) levels.push({value: METRICS[metric].of(y), name: y.label});
-    const floors = this.rows.map(r => METRICS[metric].floor(r)).filter(isNumber);
-    if (floors.length)
+    for (const y of this.facts.baselines || []) levels.push({value: METRICS[metric].of(y), name: y.label});
+    const bounds = this.rows.map(r => METRICS[metric].floor(r)).filter(isNumber);
+    if (bounds.length)
       levels.push({
-        value: metric === 'inside' || metric === 'bias' ? Math.min(...floors) : floors[0],
+        value: metric === 'inside' || metric === 'bias' ? Math.min(...bounds) : bounds[0],
         name: metric === 'bias' ? 'least 3 standard errors of a bias' : '3 \u00d7 noise of the reference',
       });
     return levels;
@@ -1231,17 +1231,17 @@ class Figure {
     };
   }
   /// Time to unit variance [Mueller2016]: what an unbiased estimator needs for a relative variance of 1, time times
-  /// variance; the mean over its rungs from 32 samples on, or over all where it has none.
+  /// variance; the mean over its points from 32 samples on, or over all where it has none.
   timeToUnitVariance(s, cost) {
-    const long = s.points.filter(p => (this.rows[p.index].spp || 0) >= 32), rungs = long.length ? long : s.points;
+    const long = s.points.filter(p => (this.rows[p.index].spp || 0) >= 32), points = long.length ? long : s.points;
     // Set-up is there once, however many samples follow.
     const timeOf = r => r.ms * r.nrmse ** 2 + (cost === 'setup' ? r.setup_ms : 0);
-    const of = rungs.map(p => this.rows[p.index]).map(timeOf).filter(isNumber);
+    const of = points.map(p => this.rows[p.index]).map(timeOf).filter(isNumber);
     if (!of.length) return {series: s.name, value: null};
     const mean = of.reduce((a, b) => a + b, 0) / of.length;
     const squares = of.reduce((a, b) => a + (b - mean) ** 2, 0);
     const spread = of.length > 1 ? Math.sqrt(squares / (of.length - 1) / of.length) : 0;
-    return {series: s.name, value: mean, spread, rungs: of.length};
+    return {series: s.name, value: mean, spread, points: of.length};
   }
   drawTables() {
     const data = this.tableData(), metric = this.state.metric;
@@ -1270,12 +1270,12 @@ class Figure {
         if (u.value === null) continue;
         html += `<p>Time to unit variance, ${escapeText(u.series)}, ${costName}: ` +
           `<b data-unit="${cost}">${short(u.value)}</b>${u.spread > 0 ? ` \u00b1 ${short(u.spread, 2)}` : ''} ` +
-          `(time \u00d7 NRMSE\u00b2${cost === 'setup' ? ' and set-up' : ''}, mean of ${u.rungs} rungs).</p>`;
+          `(time \u00d7 NRMSE\u00b2${cost === 'setup' ? ' and set-up' : ''}, mean of ${u.points} points).</p>`;
       }
     }
-    this.tableBox.innerHTML = html + '<p class="note">~: log-log between two rungs of the series. ' +
-      '\u2264: its first rung is better already. ' +
-      '\u2013: the ladder does not get there, or ends at the reference\u2019s noise. ' +
+    this.tableBox.innerHTML = html + '<p class="note">~: log-log between two points of the series. ' +
+      '\u2264: its first point is better already. ' +
+      '\u2013: the sweep does not get there, or ends at the reference\u2019s noise. ' +
       'In brackets: 95 %, from the reference\u2019s noise, seeds and times. ' +
       '\u00d7: how many times faster than path tracing at that error.</p>';
   }
@@ -1288,7 +1288,7 @@ class Figure {
     const {width: w, height: h} = this.cropSize();
     const use = methods.length > 1 ? methods : this.items.map((it, i) => i).slice(1, 5);
     if (!use.length || this.width < w || this.height < h) return;
-    const t = this.truth(0), ps = [...use.map(i => this.pixels(i)), ...(use.length === 1 ? [t] : [])];
+    const t = this.reference(0), ps = [...use.map(i => this.pixels(i)), ...(use.length === 1 ? [t] : [])];
     const epsilon = this.facts.relmse_epsilon * this.meanLuminance(0) ** 2;
     // Summed areas, with a column and a row of zeros before the first.
     const across = this.width + 1, sums = new Float64Array(across * (this.height + 1));
@@ -1351,7 +1351,7 @@ class Figure {
   }
   /// Relative L2 of a crop, of the pictures as they are.
   cropError(i, c) {
-    const d = this.difference(i), t = this.truthOf(i);
+    const d = this.difference(i), t = this.referenceOf(i);
     let a = 0, b = 0;
     for (let y = c.y; y < c.y + c.height; ++y)
       for (let x = c.x; x < c.x + c.width; ++x)
@@ -1508,7 +1508,7 @@ const KEYS = [
   {keys: ['0'], help: 'the reference of this method; again: the next one, where methods are judged by several',
    run: f => {
      const at = f.state.current;
-     f.show(at > 0 ? f.judgeOf(at) : 0 - (1 - at) % f.facts.truths.length);
+     f.show(at > 0 ? f.judgeOf(at) : 0 - (1 - at) % f.facts.references.length);
    }},
   {keys: ['1', '2', '3', '4', '5', '6', '7', '8', '9'], help: 'method 1 to 9 of the list',
    run: (f, k) => f.show(Number(k))},

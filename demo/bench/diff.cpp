@@ -12,7 +12,7 @@
 // If the processor renders, other load on the machine lengthens some pictures' times more than others. Their processor
 // time, which excludes other load, must then agree.
 //
-// A row of A that B lacks counts as a loss, unless it belongs to a ladder of path tracing that had less time.
+// A row of A that B lacks counts as a loss, unless it belongs to a sweep of path tracing that had less time.
 #include "bench/diff.hpp"
 
 #include "base/error.hpp"
@@ -191,8 +191,8 @@ std::map<std::string, ErrorRow> byLabel(const nlohmann::ordered_json& report, st
   return rows;
 }
 
-/// Whether a path tracing ladder, which climbs as long as time permits, ends before this row in the other report.
-bool isBeyondLadder(const ErrorRow& row, const std::map<std::string, ErrorRow>& others) {
+/// Whether a path tracing sweep, which climbs as long as time permits, ends before this row in the other report.
+bool isBeyondSweep(const ErrorRow& row, const std::map<std::string, ErrorRow>& others) {
   double longest = -INFINITY;
   for (const auto& [label, other] : others)
     if (row.contains("series") && other.contains("series") && row.at("series") == other.at("series"))
@@ -219,7 +219,7 @@ int runDiff(const DiffOptions& options) {
   const auto a = byLabel(reportA, orderA), b = byLabel(reportB, orderB);
   std::vector<std::string> both, onlyA, onlyB, unreached;
   for (const std::string& label : orderA)
-    (b.contains(label) ? both : isBeyondLadder(a.at(label), b) ? unreached : onlyA).push_back(label);
+    (b.contains(label) ? both : isBeyondSweep(a.at(label), b) ? unreached : onlyA).push_back(label);
   for (const std::string& label : orderB)
     if (!a.contains(label)) onlyB.push_back(label);
   if (both.empty()) throwBadInput("{} and {} have no row in common", options.a, options.b);

@@ -1,4 +1,4 @@
-// lucerna bench error SCENE: every technique over a ladder of settings, with its time and its error against a
+// lucerna bench error SCENE: every technique over a sweep of settings, with its time and its error against a
 // path-traced reference. lucerna bench references SCENE: only those references, which may be computed in batches on
 // many machines.
 #include "base/error.hpp"
@@ -24,17 +24,17 @@ namespace bench {
 namespace {
 
 /// There are at least as many patches as triangles, and form factors grow with their square: above this limit the
-/// radiosity ladder would take hours on two cores.
+/// radiosity sweep would take hours on two cores.
 constexpr std::size_t kMostTrianglesOfRadiosity = 30000;
 
 /// Pictures that are asked for stand alone, unless techniques are named too.
-bool hasLadders(const ErrorBenchOptions& options) {
-  return !options.techniques.empty() || !(options.floors || !options.rungs.empty());
+bool hasSweeps(const ErrorBenchOptions& options) {
+  return !options.techniques.empty() || !(options.bounds || !options.points.empty());
 }
 
-/// Ladders for which a scene is too large, one line each; only if none was requested by name.
+/// Sweeps for which a scene is too large, one line each; only if none was requested by name.
 std::vector<std::string> leftOutOf(const ErrorBenchOptions& options, const Scene& scene) {
-  if (!options.techniques.empty() || !hasLadders(options) || scene.triangleCount() <= kMostTrianglesOfRadiosity)
+  if (!options.techniques.empty() || !hasSweeps(options) || scene.triangleCount() <= kMostTrianglesOfRadiosity)
     return {};
   return {fmt::format(
       "radiosity: left out but for its row as published, which has a coarser model; {} triangles, each at least one "
@@ -43,8 +43,8 @@ std::vector<std::string> leftOutOf(const ErrorBenchOptions& options, const Scene
 }
 
 std::vector<std::string> chosenTechniques(const ErrorBenchOptions& options) {
-  if (!hasLadders(options)) return {};
-  std::vector<std::string> known = ladderTechniques();
+  if (!hasSweeps(options)) return {};
+  std::vector<std::string> known = sweepTechniques();
   known.emplace_back("path");
   if (options.techniques.empty()) return known;
   std::string list;
@@ -63,20 +63,21 @@ Scene withoutHighlights(Scene scene) {
   return scene;
 }
 
-std::vector<Rung> rungsOf(const ErrorBenchOptions& options, const std::vector<std::string>& techniques,
-                          const Bounds& bounds) {
+std::vector<SweepPoint> pointsOf(const ErrorBenchOptions& options, const std::vector<std::string>& techniques,
+                                 const Bounds& bounds) {
   std::vector<std::string> raster;
   for (const std::string& t : techniques)
     if (t != "path") raster.push_back(t);
-  if (options.deviations) return deviationRungs(raster);
-  std::vector<Rung> rungs;
+  if (options.deviations) return deviationPoints(raster);
+  std::vector<SweepPoint> points;
   for (const std::string& t : raster)
-    for (Rung& rung : ladderOf(t, options.small, std::max({bounds.extent().x, bounds.extent().y, bounds.extent().z})))
-      rungs.push_back(std::move(rung));
-  if (options.floors)
-    for (Rung& rung : floorRungs()) rungs.push_back(std::move(rung));
-  for (const std::string& asked : options.rungs) rungs.push_back(askedRung(asked));
-  return rungs;
+    for (SweepPoint& point :
+         sweepOf(t, options.small, std::max({bounds.extent().x, bounds.extent().y, bounds.extent().z})))
+      points.push_back(std::move(point));
+  if (options.bounds)
+    for (SweepPoint& point : boundPoints()) points.push_back(std::move(point));
+  for (const std::string& asked : options.points) points.push_back(parseSweepPoint(asked));
+  return points;
 }
 
 /// The command that repeats this measurement, except for --techniques and the folder.
@@ -89,8 +90,8 @@ std::string benchCommand(const ErrorBenchOptions& options) {
     words.insert(words.end(), {"--reference-spp", std::to_string(options.referenceSamples)});
   if (options.small) words.emplace_back("--small");
   if (options.deviations) words.emplace_back("--deviations");
-  if (options.floors) words.emplace_back("--floors");
-  for (const std::string& rung : options.rungs) words.insert(words.end(), {"--rung", rung});
+  if (options.bounds) words.emplace_back("--bounds");
+  for (const std::string& point : options.points) words.insert(words.end(), {"--point", point});
   return shellCommand(words);
 }
 
@@ -111,14 +112,14 @@ void ErrorBenchOptions::declareView(Command app) {
                       "only these of direct, rsm, lpv, irradiance-cache, radiosity, path; default: all")
             .delimiter(','),
         {"direct", "rsm", "lpv", "irradiance-cache", "radiosity", "path"});
-  app.addFlag("--small", small, "leave out the most expensive rungs");
+  app.addFlag("--small", small, "leave out the most expensive points");
   app.addFlag(
-      "--floors", floors,
+      "--bounds", bounds,
       "how much of the error of propagate and gather is the map's, and how much the cells'; without --techniques "
-      "there are no ladders");
-  app.addOption("--rung", rungs,
-                "\"TECHNIQUE [SETTING=VALUE]...\": a picture with these settings besides the ladders; without "
-                "--techniques there are no ladders");
+      "there are no sweeps");
+  app.addOption("--point", points,
+                "\"TECHNIQUE [SETTING=VALUE]...\": a picture with these settings besides the sweeps; without "
+                "--techniques there are no sweeps");
 }
 
 void ErrorBenchOptions::declare(Command app) {
@@ -128,7 +129,7 @@ void ErrorBenchOptions::declare(Command app) {
       .range(0.01, 1e6);
   app.addOption("--reference-spp", referenceSamples, "paths per pixel of every reference, instead of by time")
       .range(2, 1 << 30);
-  app.addOption("--frames", frames, "minimum number of pictures per rung").showDefault().range(1, 10000);
+  app.addOption("--frames", frames, "minimum number of pictures per point").showDefault().range(1, 10000);
   app.addOption("--out", out, "folder for the report; an interrupted bench continues where it was");
 }
 
@@ -138,14 +139,15 @@ ErrorBenchPlan::ErrorBenchPlan(const Scene& original, const ErrorBenchOptions& o
       size(parseSize(options.size)),
       techniques(chosenTechniques(options)),
       leftOut(leftOutOf(options, scene)) {
-  rungs = rungsOf(options, techniques, scene.bounds);
+  points = pointsOf(options, techniques, scene.bounds);
   if (!leftOut.empty())
-    std::erase_if(rungs, [](const Rung& rung) { return rung.picture.technique == "radiosity" && !rung.byReadPixels; });
+    std::erase_if(
+        points, [](const SweepPoint& point) { return point.picture.technique == "radiosity" && !point.byReadPixels; });
   title =
       fmt::format("{}, camera {}, {}x{}", scene.name, camera.name.empty() ? "default" : camera.name, size.x, size.y);
   withPath = std::find(techniques.begin(), techniques.end(), "path") != techniques.end();
-  for (const Rung& rung : rungs)
-    if (const TechniqueModel model = modelOf(rung, measure::kindsOf(scene));
+  for (const SweepPoint& point : points)
+    if (const TechniqueModel model = modelOf(point, measure::kindsOf(scene));
         std::find(models.begin(), models.end(), model) == models.end())
       models.push_back(model);
 }
@@ -171,18 +173,18 @@ std::unique_ptr<ErrorBenchResult> runErrorBench(const gl::Context& context, gl::
                                                 const std::string& hostName) {
   const ErrorBenchPlan plan(original, options);
   const Scene& scene = plan.scene;
-  const std::vector<Rung>& rungs = plan.rungs;
+  const std::vector<SweepPoint>& points = plan.points;
   // Rows of other processors or renderers have other times.
   const auto kept = [&](const PartOptions& part) {
     if (options.referenceSamples == 0)
       throwBadInput("--part, --checkpoint: need --reference-spp, since references by time differ between machines");
     return PartFolder(part, "bench error",
-                      fmt::format("{}, {}, {} rungs of {}, references of {} samples, scene {}, {} on {}", plan.title,
-                                  options.deviations ? "deviations" : "ladders", rungs.size(),
+                      fmt::format("{}, {}, {} points of {}, references of {} samples, scene {}, {} on {}", plan.title,
+                                  options.deviations ? "deviations" : "sweeps", points.size(),
                                   fmt::join(plan.techniques, ", "), options.referenceSamples,
                                   measure::keyOf(scene, plan.camera, plan.size, Transport::all, "rows 2").name(),
                                   context.capabilities().renderer, cpuName()),
-                      rungs.size() + plan.withPath);
+                      points.size() + plan.withPath);
   };
   // Open the folder, with results of an earlier run or of parts.
   const bool isPart = options.part.isPart();
@@ -210,11 +212,11 @@ std::unique_ptr<ErrorBenchResult> runErrorBench(const gl::Context& context, gl::
   result->references = std::move(*references);
   // Rows are judged by the reference in use: a better reference makes it another bench.
   claimFolder(folder, fmt::format("{}, {}, {}, scene {}, reference of {} samples", plan.title,
-                                  options.deviations ? "deviations" : "ladders", context.capabilities().renderer,
+                                  options.deviations ? "deviations" : "sweeps", context.capabilities().renderer,
                                   measure::keyOf(scene, plan.camera, plan.size, Transport::all, "rows 2").name(),
                                   result->references.all().samples));
 
-  // Rows: first the raster ladders, then path tracing.
+  // Rows: first the raster sweeps, then path tracing.
   const ErrorBench bench{context,
                          programs,
                          scene,
@@ -229,23 +231,23 @@ std::unique_ptr<ErrorBenchResult> runErrorBench(const gl::Context& context, gl::
                          !plan.techniques.empty()};
   writePng(folder / "pictures/reference.png", toneMapped(result->references.all().mean, scene.exposure));
   std::vector<ErrorRow> rows;
-  const std::size_t first = isPart ? part->first() : 0, last = isPart ? part->last() : rungs.size() + plan.withPath;
-  Progress progress(options.deviations ? "deviations" : "ladders", static_cast<int>(last - first), options.quiet);
-  for (std::size_t i = first; i < std::min(last, rungs.size()); ++i) {
-    const Rung& rung = rungs[i];
+  const std::size_t first = isPart ? part->first() : 0, last = isPart ? part->last() : points.size() + plan.withPath;
+  Progress progress(options.deviations ? "deviations" : "sweeps", static_cast<int>(last - first), options.quiet);
+  for (std::size_t i = first; i < std::min(last, points.size()); ++i) {
+    const SweepPoint& point = points[i];
     if (interrupted()) return result;
-    if (auto known = finishedRow(folder, rung)) {
-      (*known)["series"] = rung.series;
-      (*known)["step"] = rung.isStep;
+    if (auto known = finishedRow(folder, point)) {
+      (*known)["series"] = point.series;
+      (*known)["step"] = point.isStep;
       rows.push_back(*known);
     } else {
-      rows.push_back(rung.byReadPixels           ? measurePublished(bench, rung)
-                     : rung.floor != Floor::none ? measureFloor(bench, rung)
-                                                 : measureRung(bench, rung));
+      rows.push_back(point.byReadPixels           ? measurePublished(bench, point)
+                     : point.bound != Bound::none ? measureBound(bench, point)
+                                                  : measurePoint(bench, point));
     }
     progress.update(static_cast<int>(rows.size()));
   }
-  if (last > rungs.size())
+  if (last > points.size())
     for (ErrorRow& row : measurePath(bench, options.deviations)) rows.push_back(std::move(row));
   if (interrupted()) return result;
   if (isPart) {
@@ -264,7 +266,7 @@ std::unique_ptr<ErrorBenchResult> runErrorBench(const gl::Context& context, gl::
   report.cpu = cpuName();
   report.rows = std::move(rows);
   report.model = modelErrors(result->references);
-  report.yardsticks = yardsticks(result->references);
+  report.baselines = baselines(result->references);
   report.inside = insideModels(result->references);
   report.references = &result->references;
   report.isDeviationStudy = options.deviations;
@@ -321,9 +323,9 @@ nlohmann::ordered_json errorBenchJson(const ErrorBenchResult& result, const Erro
   json["inside_models"] = insideModelsJson(report.inside);
   json["left_out"] = report.leftOut;
   json["relmse_epsilon"] = measure::kRelativeEpsilon;
-  json["ladders"] = laddersJson(report.rows);
+  json["sweeps"] = sweepsJson(report.rows);
   json["path_slope"] = pathSlopeJson(report.rows);
-  json["yardsticks"] = report.yardsticks;
+  json["baselines"] = report.baselines;
   json["rows"] = report.rows;
   return json;
 }
@@ -410,7 +412,7 @@ Work addBenchError(Command app) {
   app.addOption("SCENE", options->bench.scene, "a scene file (default: the atrium)");
   options->bench.declare(app);
   app.addFlag("--deviations", options->bench.deviations,
-              "measure each deviation of the originals alone, instead of ladders of settings");
+              "measure each deviation of the originals alone, instead of sweeps of settings");
   options->bench.part.declare(app, "rows");
   options->common.declare(app);
   return [options] { return runError(*options); };

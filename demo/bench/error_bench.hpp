@@ -8,12 +8,12 @@ namespace lucerna::demo::bench {
 
 struct ErrorBenchOptions {
   std::string scene, camera, size = "160x90", out, references;
-  std::vector<std::string> techniques;  ///< ladders; empty: all, or none if there are rungs
-  std::vector<std::string> rungs;  ///< pictures besides, as askedRung() takes them
+  std::vector<std::string> techniques;  ///< sweeps; empty: all, or none if there are points
+  std::vector<std::string> points;  ///< pictures besides, as parseSweepPoint() takes them
   double budget = 120.0;  ///< seconds for references and path tracing together
   std::uint64_t referenceSamples = 0;  ///< 0: by time
   int frames = 5;
-  bool deviations = false, small = false, floors = false, quiet = false;
+  bool deviations = false, small = false, bounds = false, quiet = false;
   PartOptions part;  ///< of rows; only for the command itself
 
   void declare(Command app);
@@ -33,7 +33,7 @@ struct ErrorBenchPlan {
   Camera camera;
   glm::ivec2 size;
   std::vector<std::string> techniques, leftOut;
-  std::vector<Rung> rungs;
+  std::vector<SweepPoint> points;
   std::vector<TechniqueModel> models;
   std::string title;
   bool withPath = false;

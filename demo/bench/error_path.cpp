@@ -1,4 +1,4 @@
-// The path tracer's ladders, corrected and as published, and its deviations one by one: pictures that accumulate
+// The path tracer's sweeps, corrected and as published, and its deviations one by one: pictures that accumulate
 // samples, observed at 1, 2, 4, ... samples per pixel.
 #include "base/clock.hpp"
 #include "base/error.hpp"
@@ -27,9 +27,9 @@ struct PathSeries {
   std::vector<std::string> deviations;
   PathDeviations switches;
   int seeds = 1;  ///< the median over this many
-  double seconds = 0.0;  ///< for one seed's ladder
-  bool lastRung = false;  ///< keep only that one
-  std::uint32_t samples = 0;  ///< the last rung; 0: by time
+  double seconds = 0.0;  ///< for one seed's sweep
+  bool lastPoint = false;  ///< keep only that one
+  std::uint32_t samples = 0;  ///< the last point; 0: by time
 
   std::string label() const {
     std::string text = "path";
@@ -53,7 +53,7 @@ PathSeries seriesOf(const std::string& fidelity, const std::string& deviation) {
   return series;
 }
 
-/// The ladders; for the study of deviations, one rung each.
+/// The sweeps; for the study of deviations, one point each.
 std::vector<PathSeries> seriesOf(const ErrorBench& bench, bool deviations) {
   std::vector<PathSeries> all{seriesOf("corrected", "")};
   all[0].seeds = 3;
@@ -62,7 +62,7 @@ std::vector<PathSeries> seriesOf(const ErrorBench& bench, bool deviations) {
       if (std::string_view(d.name).starts_with("path.")) all.push_back(seriesOf("corrected", std::string(d.name)));
   all.push_back(seriesOf("original", ""));
   for (PathSeries& series : all) {
-    series.lastRung = deviations;
+    series.lastPoint = deviations;
     if (deviations) series.seeds = 1;
     series.seconds = bench.pathSeconds / (deviations ? static_cast<double>(all.size()) : 4.0);
   }
@@ -90,7 +90,7 @@ PathTracer::Settings settingsOf(const ErrorBench& bench, const PathSeries& serie
 }
 
 void observe(const ErrorBench& bench, const PathSeries& series, int seed,
-             std::vector<std::pair<std::uint32_t, Observation>>& ladder) {
+             std::vector<std::pair<std::uint32_t, Observation>>& sweep) {
   const auto made = Clock::now();
   PathTracer tracer(bench.context, bench.programs, bench.scene, settingsOf(bench, series, seed));
   tracer.setCamera(bench.camera);
@@ -103,26 +103,26 @@ void observe(const ErrorBench& bench, const PathSeries& series, int seed,
   double spent = 0.0, cpu = 0.0;
   std::size_t step = 0;
   for (std::uint32_t samples = 1; !interrupted(); samples *= 2, ++step) {
-    // The first seed decides how far the ladder goes; the others use the same rungs.
+    // The first seed decides how far the sweep goes; the others use the same points.
     if (seed == 0 && (series.samples ? samples > series.samples : samples > 4 && 2.0 * spent > 1e3 * series.seconds))
       break;
-    if (seed > 0 && step >= ladder.size()) break;
+    if (seed > 0 && step >= sweep.size()) break;
     const auto start = Clock::now();
     const std::clock_t cpuStart = std::clock();
     tracer.record(samples);
     gl::finish();
     spent += std::chrono::duration<double, std::milli>(Clock::now() - start).count();
     cpu += 1e3 * static_cast<double>(std::clock() - cpuStart) / CLOCKS_PER_SEC;
-    if (seed == 0) ladder.emplace_back(samples, Observation{});
-    Observation& o = ladder[step].second;
+    if (seed == 0) sweep.emplace_back(samples, Observation{});
+    Observation& o = sweep[step].second;
     o.ms.push_back(spent);
     o.cpuMs.push_back(cpu);
     const Image picture = tracer.mean();
-    const measure::Reference& truth = bench.references.path();
+    const measure::Reference& reference = bench.references.path();
     const glm::dvec3 own = tracer.statistics().meanError;
     // Channels share their paths: their errors add as if fully correlated.
     const double ownError = samples > 1 ? (own.x + own.y + own.z) / 3.0 : INFINITY;
-    o.errors.push_back(bench.references.judge(picture, truth, false, ownError));
+    o.errors.push_back(bench.references.judge(picture, reference, false, ownError));
     if (seed == 0) {
       o.picture = picture;
       if (samples > 1) o.standardError = tracer.standardError();
@@ -189,8 +189,8 @@ ErrorRow rowOf(const ErrorBench& bench, const PathSeries& series, std::uint32_t 
   return row;
 }
 
-/// Spread of a value between seeds, relative to its mean: pooled over rungs, as three seeds alone are a poor estimate.
-/// NaN if no rung has two seeds.
+/// Spread of a value between seeds, relative to its mean: pooled over points, as three seeds alone are a poor estimate.
+/// NaN if no point has two seeds.
 double relativeSpread(const std::vector<ErrorRow>& rows, const char* measure, double& freedom) {
   double squares = 0.0;
   freedom = 0.0;
@@ -222,7 +222,7 @@ void addSeedSpread(std::vector<ErrorRow>& rows) {
       const double own = spread * ofMedian * number(row, measure), reference = number(row, key.c_str());
       row[key] = std::isfinite(reference) ? std::hypot(reference, own) : own;
       row["error_freedom"] =
-          std::max(1.0, 0.5 * freedom);  // a rung includes the samples of those below it: half as many are independent
+          std::max(1.0, 0.5 * freedom);  // a point includes the samples of those below it: half as many are independent
     }
   }
 }
@@ -242,12 +242,12 @@ std::vector<ErrorRow> measurePath(const ErrorBench& bench, bool deviations) {
         continue;
       }
     }
-    std::vector<std::pair<std::uint32_t, Observation>> ladder;
-    for (int seed = 0; seed < series.seeds && !interrupted(); ++seed) observe(bench, series, seed, ladder);
+    std::vector<std::pair<std::uint32_t, Observation>> sweep;
+    for (int seed = 0; seed < series.seeds && !interrupted(); ++seed) observe(bench, series, seed, sweep);
     if (interrupted()) return {};
     std::vector<ErrorRow> own;
-    for (const auto& [samples, observation] : ladder)
-      if (!series.lastRung || samples == ladder.back().first) own.push_back(rowOf(bench, series, samples, observation));
+    for (const auto& [samples, observation] : sweep)
+      if (!series.lastPoint || samples == sweep.back().first) own.push_back(rowOf(bench, series, samples, observation));
     writeFileAtomically(file, nlohmann::ordered_json(own).dump(1) + "\n");
     rows.insert(rows.end(), own.begin(), own.end());
   }

@@ -16,22 +16,24 @@ namespace {
 /// fewer for its shape.
 constexpr double kLongerEdges = 3.0;
 
-/// A rung with patches of another edge.
-Rung withEdge(Rung rung, double edge) {
-  for (std::string& setting : rung.picture.settings)
+/// A point with patches of another edge.
+SweepPoint withEdge(SweepPoint point, double edge) {
+  for (std::string& setting : point.picture.settings)
     if (setting.starts_with("radiosity.edge=")) setting = fmt::format("radiosity.edge={:.6g}", edge);
-  return rung;
+  return point;
 }
 
 }  // namespace
 
-ErrorRow measurePublished(const ErrorBench& bench, const Rung& asked) {
-  const auto solutionOf = [](const Rung& rung) { return rung.picture.parse().of<RadiosityView::Settings>().solution; };
+ErrorRow measurePublished(const ErrorBench& bench, const SweepPoint& asked) {
+  const auto solutionOf = [](const SweepPoint& point) {
+    return point.picture.parse().of<RadiosityView::Settings>().solution;
+  };
   PatchSettings patches = solutionOf(asked).patches;
   const bool fits = bench.scene.triangleCount() <= asked.mostPatches &&
                     makePatches(bench.scene, patches).patches.size() <= asked.mostPatches;
-  const Rung rung = fits ? asked : withEdge(asked, kLongerEdges * patches.longestEdge);
-  const RadiositySolutionSettings given = solutionOf(rung);
+  const SweepPoint point = fits ? asked : withEdge(asked, kLongerEdges * patches.longestEdge);
+  const RadiositySolutionSettings given = solutionOf(point);
   PublishedSceneSettings settings;
   settings.longestEdge = given.patches.longestEdge;
   settings.view = given.hemicubes.resolution;
@@ -55,7 +57,7 @@ ErrorRow measurePublished(const ErrorBench& bench, const Rung& asked) {
   const double bound = solution.progress.errorBound;
   std::vector<std::string> shown{"radiosity.file=" + file.string()};
   if (bound < 9.9) shown.push_back(fmt::format("radiosity.error={:.3g}", 1.01 * bound));
-  ErrorRow row = measureRung(own, rung, shown);
+  ErrorRow row = measurePoint(own, point, shown);
   row["setup_ms"] = row.at("setup_ms").get<double>() + 1e3 * seconds;
   row["published"] = {{"triangles", solution.mesh.patches.size()},
                       {"scene_triangles", model.triangles},

@@ -66,7 +66,7 @@ std::string partBiasText(const ErrorRow& errors, const char* key) {
   return fmt::format("{:+.3g} %{}", 100.0 * bias, std::abs(bias) < 3.0 * error ? " (0)" : "");
 }
 std::string bytesText(double bytes) { return std::isnan(bytes) ? "" : fmt::format("{:.2f} MiB", bytes / 1048576.0); }
-/// Empty for NaN: yardsticks take no time.
+/// Empty for NaN: baselines take no time.
 std::string fixed(double value, int digits) { return std::isnan(value) ? "" : fmt::format("{:.{}f}", value, digits); }
 
 struct Column {
@@ -143,12 +143,12 @@ std::string textOf(const HtmlPage::Table& table) {
 
 HtmlPage::Table allLightTable(const ErrorReport& report) {
   std::vector<const ErrorRow*> rows;
-  for (const ErrorRow& row : report.yardsticks) rows.push_back(&row);
+  for (const ErrorRow& row : report.baselines) rows.push_back(&row);
   for (const ErrorRow& row : report.rows) rows.push_back(&row);
   return tableOf(kColumns, rows, "pareto");
 }
 
-/// Yardsticks, then the model's rows, best first.
+/// Baselines, then the model's rows, best first.
 HtmlPage::Table insideTable(const ErrorReport& report, const InsideModel& model) {
   std::vector<const ErrorRow*> rows;
   for (const ErrorRow& row : report.rows)
@@ -166,7 +166,7 @@ constexpr const char* kInsideHeading =
 constexpr const char* kInsideNote =
     "Settings of a technique are ranked here, never by the error of all light, where errors of the model and of the "
     "settings may cancel. Marked: on the front of their technique by time and error. "
-    "squares in lit: share of sum d^2 in directly lit pixels. Floors (--floors): what is left of the error without "
+    "squares in lit: share of sum d^2 in directly lit pixels. Bounds (--bounds): what is left of the error without "
     "cells, and of the exact radiance in them.";
 
 std::string notes(const ErrorReport& report) {
@@ -188,23 +188,23 @@ std::string notes(const ErrorReport& report) {
   return line;
 }
 
-constexpr const char* kLaddersNote =
-    "More is better: relative L2 along each ladder, inside its model, or of all light where its rungs have several. "
+constexpr const char* kSweepsNote =
+    "More is better: relative L2 along each sweep, inside its model, or of all light where its points have several. "
     "Worse: the error rises by more than two standard errors, which the reference's noise gives.";
 
-HtmlPage::Table laddersTable(const std::vector<Ladder>& ladders) {
-  HtmlPage::Table table{{"ladder", "errors, %", "worse"}, {}, {}};
-  for (const Ladder& ladder : ladders) {
+HtmlPage::Table sweepsTable(const std::vector<Sweep>& sweeps) {
+  HtmlPage::Table table{{"sweep", "errors, %", "worse"}, {}, {}};
+  for (const Sweep& sweep : sweeps) {
     std::string errors, worse;
-    for (std::size_t i = 0; i < ladder.errors.size(); ++i) {
-      const double e = 100.0 * ladder.errors[i];
+    for (std::size_t i = 0; i < sweep.errors.size(); ++i) {
+      const double e = 100.0 * sweep.errors[i];
       errors += (i == 0 ? "" : ", ") + (std::isfinite(e) ? fmt::format("{:.3g}", e) : std::string("noise"));
     }
-    for (const Ladder::Rise& rise : ladder.rises)
-      worse += fmt::format("{}{} by {:.2g} % +- {:.1g}", worse.empty() ? "" : "; ", ladder.labels[rise.to],
+    for (const Sweep::Rise& rise : sweep.rises)
+      worse += fmt::format("{}{} by {:.2g} % +- {:.1g}", worse.empty() ? "" : "; ", sweep.labels[rise.to],
                            100.0 * rise.by, 100.0 * rise.error);
-    table.rows.push_back({ladder.series, errors, worse.empty() ? "never" : worse});
-    table.marked.push_back(ladder.rises.empty());
+    table.rows.push_back({sweep.series, errors, worse.empty() ? "never" : worse});
+    table.marked.push_back(sweep.rises.empty());
   }
   return table;
 }
@@ -268,8 +268,8 @@ std::string terminalTable(const ErrorReport& report) {
   if (!report.inside.empty()) result += fmt::format("\n{}.\n{}\n", kInsideHeading, kInsideNote);
   for (const InsideModel& model : report.inside)
     result += fmt::format("\n{}\n{}", model.name, textOf(insideTable(report, model)));
-  if (const std::vector<Ladder> ladders = laddersOf(report.rows); !ladders.empty())
-    result += fmt::format("\n{}\n{}", kLaddersNote, textOf(laddersTable(ladders)));
+  if (const std::vector<Sweep> sweeps = sweepsOf(report.rows); !sweeps.empty())
+    result += fmt::format("\n{}\n{}", kSweepsNote, textOf(sweepsTable(sweeps)));
   if (!report.model.empty()) result += "\nWhat the models leave out, whatever the settings:\n";
   for (const ModelError& m : report.model) result += "  " + modelText(m) + "\n";
   return result;
@@ -298,7 +298,7 @@ std::string csvOf(const ErrorReport& report) {
     }
     csv += figure(number(inside, "nrmse")) + figure(number(part(inside, "blocks"), "nrmse")) + "\n";
   };
-  for (const ErrorRow& row : report.yardsticks) add(row);
+  for (const ErrorRow& row : report.baselines) add(row);
   for (const ErrorRow& row : report.rows) add(row);
   return csv;
 }
@@ -316,16 +316,16 @@ nlohmann::ordered_json pathSlopeJson(const std::vector<ErrorRow>& rows) {
           {"to", s->last}};
 }
 
-nlohmann::ordered_json laddersJson(const std::vector<ErrorRow>& rows) {
+nlohmann::ordered_json sweepsJson(const std::vector<ErrorRow>& rows) {
   auto json = nlohmann::ordered_json::array();
-  for (const Ladder& ladder : laddersOf(rows)) {
+  for (const Sweep& sweep : sweepsOf(rows)) {
     auto rises = nlohmann::ordered_json::array();
-    for (const Ladder::Rise& rise : ladder.rises)
-      rises.push_back({{"to", ladder.labels[rise.to]}, {"by", rise.by}, {"error", rise.error}});
-    json.push_back({{"series", ladder.series},
-                    {"model", ladder.model.empty() ? "all light" : ladder.model},
-                    {"labels", ladder.labels},
-                    {"l2", ladder.errors},
+    for (const Sweep::Rise& rise : sweep.rises)
+      rises.push_back({{"to", sweep.labels[rise.to]}, {"by", rise.by}, {"error", rise.error}});
+    json.push_back({{"series", sweep.series},
+                    {"model", sweep.model.empty() ? "all light" : sweep.model},
+                    {"labels", sweep.labels},
+                    {"l2", sweep.errors},
                     {"rises", rises}});
   }
   return json;
@@ -422,8 +422,8 @@ bool plotAllLight(const fs::path& folder, const ErrorReport& report) {
   }
   plot.series.insert(plot.series.begin(), front);
   sortByTime(plot);
-  for (const ErrorRow& row : report.yardsticks) plot.levels.push_back({100.0 * number(row, "l2"), text(row, "label")});
-  plot.levels.push_back({300.0 * number(report.yardsticks.front(), "noise_l2"), "3 x noise of the reference"});
+  for (const ErrorRow& row : report.baselines) plot.levels.push_back({100.0 * number(row, "l2"), text(row, "label")});
+  plot.levels.push_back({300.0 * number(report.baselines.front(), "noise_l2"), "3 x noise of the reference"});
   if (index.contains("path")) {
     plot.guideSlope = -0.5;
     std::swap(plot.series[index["path"] + 1], plot.series.back());
@@ -480,7 +480,7 @@ Figure figureOf(const fs::path& folder, const ErrorReport& report, std::vector<I
                   {"exposure", report.exposure},
                   {"relmse_epsilon", measure::kRelativeEpsilon},
                   {"references", referencesJson(*report.references)},
-                  {"yardsticks", report.yardsticks},
+                  {"baselines", report.baselines},
                   {"rows", report.rows}};
   const measure::Reference &all = report.references->all(), &path = report.references->path();
   figure.references.push_back(
@@ -538,10 +538,10 @@ void addToPage(HtmlPage& page, const fs::path& folder, const ErrorReport& report
     page.paragraph(model.name);
     page.table(insideTable(report, model));
   }
-  if (const std::vector<Ladder> ladders = laddersOf(report.rows); !ladders.empty()) {
+  if (const std::vector<Sweep> sweeps = sweepsOf(report.rows); !sweeps.empty()) {
     page.heading("More is better");
-    page.paragraph(kLaddersNote);
-    page.table(laddersTable(ladders));
+    page.paragraph(kSweepsNote);
+    page.table(sweepsTable(sweeps));
   }
   if (!report.model.empty()) {
     HtmlPage::Table model{{"left out", "of", "relative L2", "bias"}, {}, {}};
@@ -550,8 +550,8 @@ void addToPage(HtmlPage& page, const fs::path& folder, const ErrorReport& report
     page.table(model);
   }
   page.heading("Pictures");
-  const Image& truth = report.references->all().mean;
-  const double scale = 0.2 * measure::heatMapScale(Image(truth.width, truth.height), truth);
+  const Image& reference = report.references->all().mean;
+  const double scale = 0.2 * measure::heatMapScale(Image(reference.width, reference.height), reference);
   page.paragraph(
       fmt::format("Heat maps: absolute, 0 (black) to {0:.3g} and more (white) radiance; signed luminance, -{0:.3g} "
                   "(blue), 0 (white), +{0:.3g} (red). One scale for all.",

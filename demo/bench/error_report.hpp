@@ -13,7 +13,7 @@ struct ErrorReport {
   std::string command;  ///< repeats the measurement, without --out
   float exposure = 1.0f;  ///< of the pictures as first displayed
   std::vector<ErrorRow> rows;
-  std::vector<ErrorRow> yardsticks;  ///< "black" and "constant", against all light
+  std::vector<ErrorRow> baselines;  ///< "black" and "constant", against all light
   std::vector<ModelError> model;
   std::vector<InsideModel> inside;  ///< models of the rows' techniques
   const References* references = nullptr;
@@ -22,12 +22,12 @@ struct ErrorReport {
 };
 
 std::string terminalTable(const ErrorReport& report);
-/// Yardsticks and rows.
+/// Baselines and rows.
 std::string csvOf(const ErrorReport& report);
-/// Exponents of the error of the path tracer's corrected ladder; null with fewer than three rows above the reference's
+/// Exponents of the error of the path tracer's corrected sweep; null with fewer than three rows above the reference's
 /// noise.
 nlohmann::ordered_json pathSlopeJson(const std::vector<ErrorRow>& rows);
-nlohmann::ordered_json laddersJson(const std::vector<ErrorRow>& rows);
+nlohmann::ordered_json sweepsJson(const std::vector<ErrorRow>& rows);
 nlohmann::ordered_json modelJson(const std::vector<ModelError>& model);
 nlohmann::ordered_json insideModelsJson(const std::vector<InsideModel>& inside);
 nlohmann::ordered_json referencesJson(const References& references);

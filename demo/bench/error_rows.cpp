@@ -115,22 +115,22 @@ nlohmann::ordered_json partJson(const measure::PartErrors& part) {
 /// Judge only surface pixels if the model shows lights themselves; indirect light does not.
 bool onSurfacesAlone(const LightPaths& model) { return showsLights(model.transport); }
 
-/// A yardstick's errors. That of a black picture is 100 % by definition, however noisy the reference is.
-ErrorRow yardstickErrors(const References& references, const std::string& name, const Image& picture,
-                         const measure::Reference& truth, bool surfacesAlone) {
-  ErrorRow errors = errorsJson(references.judge(picture, truth, surfacesAlone));
+/// A baseline's errors. That of a black picture is 100 % by definition, however noisy the reference is.
+ErrorRow baselineErrors(const References& references, const std::string& name, const Image& picture,
+                        const measure::Reference& reference, bool surfacesAlone) {
+  ErrorRow errors = errorsJson(references.judge(picture, reference, surfacesAlone));
   if (name == "black") errors["at_noise"] = errors["blocks"]["at_noise"] = false;
   return errors;
 }
 
 /// A picture of no cost, which techniques must beat.
-ErrorRow yardstick(const References& references, const std::string& name, const Image& picture) {
+ErrorRow baseline(const References& references, const std::string& name, const Image& picture) {
   ErrorRow row;
   row["technique"] = row["series"] = row["label"] = name;
   row["fidelity"] = "";
   row["settings"] = row["deviations"] = nlohmann::ordered_json::array();
   for (const char* key : {"ms", "wall_ms", "setup_ms", "gpu_bytes"}) row[key] = nullptr;
-  row.update(yardstickErrors(references, name, picture, references.all(), false));
+  row.update(baselineErrors(references, name, picture, references.all(), false));
   row["flip"] = measure::flipHdr(picture, references.all().mean).mean;
   return row;
 }
@@ -169,10 +169,10 @@ nlohmann::ordered_json errorsJson(const JudgedPicture& judged) {
           {"other", partJson(judged.other)}};
 }
 
-std::vector<ErrorRow> yardsticks(const References& references) {
+std::vector<ErrorRow> baselines(const References& references) {
   const measure::Reference& all = references.all();
-  return {yardstick(references, "black", references.blackPicture(all)),
-          yardstick(references, "constant", references.constantPicture(all))};
+  return {baseline(references, "black", references.blackPicture(all)),
+          baseline(references, "constant", references.constantPicture(all))};
 }
 
 std::vector<InsideModel> insideModels(const References& references) {
@@ -182,24 +182,24 @@ std::vector<InsideModel> insideModels(const References& references) {
     if (!m.paths.lights.any() || m.paths == LightPaths{Transport::all, references.lights} ||
         !made.insert(m.paths).second)
       continue;
-    const measure::Reference truth = references.inside(m.paths);
+    const measure::Reference reference = references.inside(m.paths);
     const auto row = [&](const char* name, const Image& picture) {
       ErrorRow r{{"label", name}, {"technique", name}};
-      r["inside_model"] = yardstickErrors(references, name, picture, truth, onSurfacesAlone(m.paths));
+      r["inside_model"] = baselineErrors(references, name, picture, reference, onSurfacesAlone(m.paths));
       r["inside_model"]["model"] = nameOf(m.paths);
       return r;
     };
-    result.push_back({nameOf(m.paths), row("black", references.blackPicture(truth)),
-                      row("constant", references.constantPicture(truth))});
+    result.push_back({nameOf(m.paths), row("black", references.blackPicture(reference)),
+                      row("constant", references.constantPicture(reference))});
   }
   return result;
 }
 
-TechniqueModel modelOf(const Rung& rung, measure::LightKinds scene) {
-  const RenderSettings settings = rung.picture.parse();
+TechniqueModel modelOf(const SweepPoint& point, measure::LightKinds scene) {
+  const RenderSettings settings = point.picture.parse();
   LightPaths paths = modelOf(settings);
   paths.lights = paths.lights & scene;
-  return {rung.picture.technique, paths, directLightsOf(settings) & scene};
+  return {point.picture.technique, paths, directLightsOf(settings) & scene};
 }
 
 fs::path rowFile(const fs::path& folder, const std::string& name) {
@@ -209,9 +209,9 @@ fs::path rowFile(const fs::path& folder, const std::string& name) {
 std::string writePictures(const ErrorBench& bench, const std::string& name, const Image& picture,
                           const measure::Reference& reference, const std::vector<float>& flip, const Image* ownError) {
   const std::string stem = "pictures/" + fileStem(name);
-  const Image& truth = reference.mean;
+  const Image& exact = reference.mean;
   // The same scale for all rows, so that they can be compared: a fifth of a black picture's error.
-  const double scale = std::max(0.2 * measure::heatMapScale(Image(truth.width, truth.height), truth), 1e-30);
+  const double scale = std::max(0.2 * measure::heatMapScale(Image(exact.width, exact.height), exact), 1e-30);
   const auto file = [&](const char* kind) { return bench.folder / (stem + kind + ".png"); };
   writePng(file(""), toneMapped(picture, bench.scene.exposure));
   writeImage(bench.folder / (stem + ".pfm"), picture);
@@ -225,8 +225,8 @@ std::string writePictures(const ErrorBench& bench, const std::string& name, cons
     }
     writePng(file(".flip"), map);
   }
-  writePng(file(".absolute"), measure::heatMap(picture, truth, measure::HeatMap::absolute, scale));
-  writePng(file(".signed"), measure::heatMap(picture, truth, measure::HeatMap::signedLuminance, scale));
+  writePng(file(".absolute"), measure::heatMap(picture, exact, measure::HeatMap::absolute, scale));
+  writePng(file(".signed"), measure::heatMap(picture, exact, measure::HeatMap::signedLuminance, scale));
   return stem;
 }
 
@@ -252,7 +252,7 @@ void addProvenance(const ErrorBench& bench, ErrorRow& row) {
   row["renderer"] = bench.context.capabilities().renderer;
   row["driver"] = bench.context.capabilities().version;
   row["cpu"] = cpuName();
-  row["command"] = bench.command + (bench.hasLadders ? " --techniques " + technique : "");
+  row["command"] = bench.command + (bench.hasSweeps ? " --techniques " + technique : "");
   std::vector<std::string> words{"--technique", technique, "--fidelity", row.at("fidelity").get<std::string>()};
   for (const auto& deviation : row.at("deviations"))
     words.insert(words.end(), {"--deviation", deviation.get<std::string>()});
@@ -294,18 +294,18 @@ void claimFolder(const fs::path& folder, const std::string& identity) {
   writeFileAtomically(file, identity + "\n");
 }
 
-std::optional<ErrorRow> finishedRow(const fs::path& folder, const Rung& rung) {
-  return readRow(rowFile(folder, rung.name()));
+std::optional<ErrorRow> finishedRow(const fs::path& folder, const SweepPoint& point) {
+  return readRow(rowFile(folder, point.name()));
 }
 
-void keepRow(const ErrorBench& bench, const Rung& rung, const ErrorRow& row) {
-  writeFileAtomically(rowFile(bench.folder, rung.name()), row.dump(1) + "\n");
+void keepRow(const ErrorBench& bench, const SweepPoint& point, const ErrorRow& row) {
+  writeFileAtomically(rowFile(bench.folder, point.name()), row.dump(1) + "\n");
 }
 
 namespace {
 
 /// The row of a measurement. indirect: the picture of indirect light alone, made if it is needed.
-ErrorRow rowOf(const ErrorBench& bench, const Rung& rung, const PictureOptions& options, const Timed& timed,
+ErrorRow rowOf(const ErrorBench& bench, const SweepPoint& point, const PictureOptions& options, const Timed& timed,
                const std::function<Image()>& indirect) {
   const bool software = bench.context.capabilities().softwareRenderer;
   const double wall = median(timed.wallMs);
@@ -315,9 +315,9 @@ ErrorRow rowOf(const ErrorBench& bench, const Rung& rung, const PictureOptions& 
   row["fidelity"] = options.fidelity;
   row["settings"] = options.settings;
   row["deviations"] = options.deviations;
-  row["series"] = rung.series;
-  row["step"] = rung.isStep;
-  row["label"] = rung.label();
+  row["series"] = point.series;
+  row["step"] = point.isStep;
+  row["label"] = point.label();
   row["ms"] = software || timed.queryMs == 0.0 ? wall : timed.queryMs;
   row["wall_ms"] = wall;
   row["wall_ms_spread"] = {percentile(timed.wallMs, 0.05), percentile(timed.wallMs, 0.95)};
@@ -333,7 +333,7 @@ ErrorRow rowOf(const ErrorBench& bench, const Rung& rung, const PictureOptions& 
   if (errors.pixels.measured.notFinite == 0) flip = measure::flipHdr(timed.picture, bench.references.all().mean);
   row["flip"] = flip.mean;
   // Inside its model: the promised light, from the supported lights. All light is judged above.
-  const LightPaths model = modelOf(rung, bench.references.lights).paths;
+  const LightPaths model = modelOf(point, bench.references.lights).paths;
   if (model.lights.any() && model != LightPaths{Transport::all, bench.references.lights}) {
     const bool whole = showsLights(model.transport);
     const Image picture = whole ? timed.picture : indirect();
@@ -343,34 +343,34 @@ ErrorRow rowOf(const ErrorBench& bench, const Rung& rung, const PictureOptions& 
     row["inside_model"]["transport"] = std::string(nameOf(model.transport));
     row["inside_model"]["lights"] = measure::nameOf(model.lights);
   }
-  row["picture"] = writePictures(bench, rung.name(), timed.picture, bench.references.all(), flip.map, nullptr);
+  row["picture"] = writePictures(bench, point.name(), timed.picture, bench.references.all(), flip.map, nullptr);
   addProvenance(bench, row);
-  keepRow(bench, rung, row);
+  keepRow(bench, point, row);
   return row;
 }
 
 }  // namespace
 
-ErrorRow measureRung(const ErrorBench& bench, const Rung& rung, const std::vector<std::string>& more) {
-  PictureOptions options = rung.picture;
+ErrorRow measurePoint(const ErrorBench& bench, const SweepPoint& point, const std::vector<std::string>& more) {
+  PictureOptions options = point.picture;
   options.settings.insert(options.settings.end(), more.begin(), more.end());
   const Timed timed = render(bench, settingsOf(bench, options, Component::all), bench.frames);
-  return rowOf(bench, rung, options, timed,
+  return rowOf(bench, point, options, timed,
                [&] { return render(bench, settingsOf(bench, options, Component::indirect), 1).picture; });
 }
 
-ErrorRow measureFloor(const ErrorBench& bench, const Rung& rung) {
+ErrorRow measureBound(const ErrorBench& bench, const SweepPoint& point) {
   // The scene with the lights of the technique's model alone.
-  const measure::LightKinds lights = modelOf(rung, bench.references.lights).paths.lights;
+  const measure::LightKinds lights = modelOf(point, bench.references.lights).paths.lights;
   const Scene scene = measure::litBy(bench.scene, lights);
-  RenderSettings settings = settingsOf(bench, rung.picture, Component::indirect);
+  RenderSettings settings = settingsOf(bench, point.picture, Component::indirect);
   if (settings.technique == "lpv") {
     settings.of<IrradianceCacheSettings>().cascades = settings.of<LpvSettings>().cascades;
     settings.of<IrradianceCacheSettings>().bounces = settings.of<LpvSettings>().bounces;
   }
   settings.technique = "irradiance-cache";
   settings.of<IrradianceCacheSettings>().transport =
-      rung.floor == Floor::map ? CacheTransport::gather : CacheTransport::rays;
+      point.bound == Bound::map ? CacheTransport::gather : CacheTransport::rays;
   settings.of<IrradianceCacheSettings>().samples =
       settings.of<IrradianceCacheSettings>().rays;  // the records' light is not shown
   Timed timed;
@@ -383,19 +383,19 @@ ErrorRow measureFloor(const ErrorBench& bench, const Rung& rung) {
   const std::clock_t cpuStart = std::clock();
   const IrradianceCacheFrame* frame = dynamic_cast<const IrradianceCacheFrame*>(renderer.technique());
   constexpr int kPaths = 2048;
-  const Image indirect =
-      !frame
-          ? Image(bench.size.x, bench.size.y)
-          : measure::lit(bench.references.albedo,
-                         rung.floor == Floor::map ? frame->gatheredAtPixels()
-                                                  : frame->readFromCells(settings.of<LpvSettings>().cascades,
-                                                                         settings.of<LpvSettings>().blendBand, kPaths));
+  const Image indirect = !frame
+                             ? Image(bench.size.x, bench.size.y)
+                             : measure::lit(bench.references.albedo,
+                                            point.bound == Bound::map
+                                                ? frame->gatheredAtPixels()
+                                                : frame->readFromCells(settings.of<LpvSettings>().cascades,
+                                                                       settings.of<LpvSettings>().blendBand, kPaths));
   timed.wallMs = {msSince(start)};
   timed.cpuMs = {1e3 * static_cast<double>(std::clock() - cpuStart) / CLOCKS_PER_SEC};
   timed.gpuBytes = renderer.gpuBytes();
-  timed.picture = render(bench, settingsOf(bench, rung.picture, Component::direct), 1).picture;
+  timed.picture = render(bench, settingsOf(bench, point.picture, Component::direct), 1).picture;
   for (std::size_t i = 0; i < indirect.pixels.size(); ++i) timed.picture.pixels[i] += indirect.pixels[i];
-  return rowOf(bench, rung, rung.picture, timed, [&] { return indirect; });
+  return rowOf(bench, point, point.picture, timed, [&] { return indirect; });
 }
 
 namespace {
@@ -445,8 +445,8 @@ void markFront(std::vector<ErrorRow>& rows) {
   }
 }
 
-std::vector<Ladder> laddersOf(const std::vector<ErrorRow>& rows) {
-  std::vector<Ladder> ladders;
+std::vector<Sweep> sweepsOf(const std::vector<ErrorRow>& rows) {
+  std::vector<Sweep> sweeps;
   for (std::size_t first = 0, last = 0; first < rows.size(); first = last) {
     const std::string series = rows[first].at("series").get<std::string>();
     while (last < rows.size() && rows[last].at("series") == series) ++last;
@@ -455,22 +455,22 @@ std::vector<Ladder> laddersOf(const std::vector<ErrorRow>& rows) {
     const auto modelOfRow = [](const ErrorRow& row) {
       return row.contains("inside_model") ? row.at("inside_model").at("model").get<std::string>() : std::string();
     };
-    Ladder ladder{series, modelOfRow(rows[first]), {}, {}, {}};
-    if (!is([&](const ErrorRow& row) { return modelOfRow(row) == ladder.model; })) ladder.model.clear();
+    Sweep sweep{series, modelOfRow(rows[first]), {}, {}, {}};
+    if (!is([&](const ErrorRow& row) { return modelOfRow(row) == sweep.model; })) sweep.model.clear();
     double before = NAN, beforeError = NAN;
     for (std::size_t i = first; i < last; ++i) {
-      const ErrorRow& errors = ladder.model.empty() ? rows[i] : rows[i].at("inside_model");
+      const ErrorRow& errors = sweep.model.empty() ? rows[i] : rows[i].at("inside_model");
       const double error = number(errors, "l2_error"),
                    value = errors.value("at_noise", false) ? NAN : number(errors, "l2");
-      ladder.labels.push_back(rows[i].at("label").get<std::string>());
-      ladder.errors.push_back(value);
+      sweep.labels.push_back(rows[i].at("label").get<std::string>());
+      sweep.errors.push_back(value);
       if (measure::isBelow(before, beforeError, value, error))
-        ladder.rises.push_back({i - first, value - before, std::hypot(error, beforeError)});
+        sweep.rises.push_back({i - first, value - before, std::hypot(error, beforeError)});
       before = value, beforeError = error;
     }
-    ladders.push_back(std::move(ladder));
+    sweeps.push_back(std::move(sweep));
   }
-  return ladders;
+  return sweeps;
 }
 
 }  // namespace lucerna::demo::bench

@@ -11,7 +11,7 @@ lucerna::demo::Work addBench(lucerna::demo::Command app) {
   addOriginals(commands);
   commands.add("rays", "Rays per second of the compute-shader hierarchy, compared with Embree on the same rays",
                addBenchRays);
-  commands.add("error", "Error against run time: every technique over a ladder of settings", addBenchError);
+  commands.add("error", "Error against run time: every technique over a sweep of settings", addBenchError);
   commands.add("references", "Only the references of bench error, optionally in parts", addBenchReferences);
   commands.add("diff",
                "Two reports of bench error row by row: better, worse or undecided, by a test that uses both spreads",

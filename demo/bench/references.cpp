@@ -205,29 +205,29 @@ Image References::constantPicture(const Reference& reference) const {
 JudgedPicture References::judge(const Image& original, const Reference& reference, bool surfacesAlone,
                                 double ownError) const {
   const Image black = blackPicture(reference);
-  Image picture = original, truth = reference.mean, error = reference.standardError;
+  Image picture = original, exact = reference.mean, error = reference.standardError;
   if (surfacesAlone)
     for (std::size_t i = 0; i < picture.pixels.size(); ++i)
       if (!lit[i] && !other[i])
-        picture.pixels[i] = truth.pixels[i] = black.pixels[i], error.pixels[i] = glm::vec3(0.0f);
+        picture.pixels[i] = exact.pixels[i] = black.pixels[i], error.pixels[i] = glm::vec3(0.0f);
   const auto errors = [&](const Image& p, const Image& t, const Image& e) {
     return measure::lessNoise(measure::errorsOf(p, t), measure::noiseOf(t, e, reference.meanError), ownError);
   };
   JudgedPicture judged;
-  judged.pixels = errors(picture, truth, error);
+  judged.pixels = errors(picture, exact, error);
   // d sqrt(x) = dx / (2 sqrt(x)).
-  const measure::SquareErrors whole = measure::squareErrorsOf(picture, truth, error);
+  const measure::SquareErrors whole = measure::squareErrorsOf(picture, exact, error);
   judged.nrmseError = whole.squares / (2.0 * judged.pixels.rmse * judged.pixels.measured.referenceMean);
   judged.relmseError = whole.relative;
-  picture = less(picture, black), truth = less(truth, black);
-  const int side = measure::blockSide(truth.width);
-  judged.scattered = errors(picture, truth, error);
-  judged.l2Error = measure::squareErrorsOf(picture, truth, error).squares * judged.scattered.l2 /
+  picture = less(picture, black), exact = less(exact, black);
+  const int side = measure::blockSide(exact.width);
+  judged.scattered = errors(picture, exact, error);
+  judged.l2Error = measure::squareErrorsOf(picture, exact, error).squares * judged.scattered.l2 /
                    (2.0 * judged.scattered.rmse * judged.scattered.rmse);
-  judged.blocks = errors(measure::blockMeans(picture, side), measure::blockMeans(truth, side),
+  judged.blocks = errors(measure::blockMeans(picture, side), measure::blockMeans(exact, side),
                          measure::blockStandardErrors(error, side));
-  judged.lit = measure::partErrorsOf(picture, truth, error, lit, ownError);
-  judged.other = measure::partErrorsOf(picture, truth, error, other, ownError);
+  judged.lit = measure::partErrorsOf(picture, exact, error, lit, ownError);
+  judged.other = measure::partErrorsOf(picture, exact, error, other, ownError);
   return judged;
 }
 
@@ -281,10 +281,10 @@ std::optional<References> obtainReferences(const ReferenceRequest& request) {
 }
 
 std::vector<ModelError> modelErrors(const References& r) {
-  const auto judge = [&](const Reference& model, const Reference& truth) {
-    const Reference d = difference(truth, model);
-    return measure::lessNoise(measure::errorsOf(model.mean, truth.mean),
-                              measure::noiseOf(truth.mean, d.standardError, d.meanError));
+  const auto judge = [&](const Reference& model, const Reference& exact) {
+    const Reference d = difference(exact, model);
+    return measure::lessNoise(measure::errorsOf(model.mean, exact.mean),
+                              measure::noiseOf(exact.mean, d.standardError, d.meanError));
   };
   const auto addName = [](std::string& names, const std::string& name) {
     if ((", " + names + ",").find(", " + name + ",") == std::string::npos) names += (names.empty() ? "" : ", ") + name;

@@ -27,7 +27,7 @@ struct ReferenceRequest {
   const Camera& camera;
   glm::ivec2 size;
   double seconds;  ///< for all of them together
-  std::vector<TechniqueModel> models;  ///< of the rungs
+  std::vector<TechniqueModel> models;  ///< of the points
   std::uint64_t samples = 0;  ///< per pixel; 0: by time
   std::filesystem::path folder;  ///< of the cache; empty: the default
   bool quiet = false;

@@ -91,7 +91,7 @@ int runTune(TuneOptions options) {
   checkWritable(options.output);
   if (options.bench.out.empty()) options.bench.out = "bench-error";
   if (options.bench.techniques.empty())
-    options.bench.techniques = bench::ladderTechniques();  // the real-time techniques; path tracing on request
+    options.bench.techniques = bench::sweepTechniques();  // the real-time techniques; path tracing on request
   const auto result = bench::benchScene(options.common, options.bench);
   if (!result) return exitCode();
 

@@ -41,12 +41,12 @@ Finding measureErrors(const UnitInput& input) {
   options.quiet = true;
   // The path tracer's error over time, and one picture by each other technique.
   options.techniques = {"path"};
-  options.rungs = {"direct",
-                   "rsm",
-                   "lpv",
-                   "irradiance-cache",
-                   "irradiance-cache cache.transport=gather",
-                   "radiosity radiosity.edge=0.1"};
+  options.points = {"direct",
+                    "rsm",
+                    "lpv",
+                    "irradiance-cache",
+                    "irradiance-cache cache.transport=gather",
+                    "radiosity radiosity.edge=0.1"};
   at("measuring errors");
   const auto result = bench::runErrorBench(session.context, session.programs, loadScene(options.scene), options,
                                            std::string(nameOf(session.host->kind())));

@@ -245,12 +245,12 @@ bool Checks::twin(const std::string& name, const Twin& twin) {
   const auto stride = static_cast<std::size_t>(twin.stride), count = static_cast<std::size_t>(twin.points);
   std::vector<glm::vec4> points(stride * count, glm::vec4(0.0f));
   const auto pointOf = [&](std::size_t i) { return Point(points).subspan(i * stride, stride); };
-  std::vector<glm::dvec4> truth(count);
+  std::vector<glm::dvec4> reference(count);
   double square = 0.0;
   for (std::size_t i = 0; i < count; ++i) {
     twin.draw(random_, std::span(points).subspan(i * stride, stride));
-    truth[i] = twin.truth(pointOf(i));
-    square += glm::dot(truth[i], truth[i]);
+    reference[i] = twin.reference(pointOf(i));
+    square += glm::dot(reference[i], reference[i]);
   }
   const double rms = std::sqrt(square / static_cast<double>(count)), scale = 0.01 * rms;
   // Where terms cancel, the result carries the rounding of the terms: eight units in the last place of a float of
@@ -266,13 +266,13 @@ bool Checks::twin(const std::string& name, const Twin& twin) {
   bool finite = true;
   for (std::size_t i = 0; i < count && finite; ++i) {
     finite = isFinite(measured[i]);
-    if (!finite || distance(i, truth[i]) > distance(worst, truth[worst])) worst = i;
-    if (finite && distance(i, truth[i]) <= 1.0) ++agreeing;
+    if (!finite || distance(i, reference[i]) > distance(worst, reference[worst])) worst = i;
+    if (finite && distance(i, reference[i]) <= 1.0) ++agreeing;
   }
-  CheckResult result{.name = name, .expected = vectorText(truth[worst]), .measured = vectorText(measured[worst])};
+  CheckResult result{.name = name, .expected = vectorText(reference[worst]), .measured = vectorText(measured[worst])};
   if (finite && agreeing == count) {
     result.verdict = Verdict::passed;
-    result.sigma = fmt::format("{} points, worst {:.2g} of the tolerance", count, distance(worst, truth[worst]));
+    result.sigma = fmt::format("{} points, worst {:.2g} of the tolerance", count, distance(worst, reference[worst]));
     return add(result);
   }
   result.sigma =
@@ -292,7 +292,7 @@ bool Checks::twin(const std::string& name, const Twin& twin) {
     double spread = 0.0, cross = 0.0, length = 0.0;
     for (std::size_t i = 0; i < count; ++i) {
       spread = std::max(spread, glm::length(glm::dvec4(measured[i]) - first));
-      cross += glm::dot(glm::dvec4(measured[i]), truth[i]);
+      cross += glm::dot(glm::dvec4(measured[i]), reference[i]);
       length = std::max(length, glm::length(glm::dvec4(measured[i])));
     }
     if (length == 0.0) return {"zero", "the result is zero everywhere"};
@@ -300,8 +300,8 @@ bool Checks::twin(const std::string& name, const Twin& twin) {
     const double ratio = cross / square;
     bool proportional = true;
     for (std::size_t i = 0; i < count && proportional; ++i)
-      proportional = glm::length(glm::dvec4(measured[i]) - ratio * truth[i]) <=
-                     10.0 * twin.tolerance * std::abs(ratio) * (glm::length(truth[i]) + scale);
+      proportional = glm::length(glm::dvec4(measured[i]) - ratio * reference[i]) <=
+                     10.0 * twin.tolerance * std::abs(ratio) * (glm::length(reference[i]) + scale);
     if (proportional)
       return factorMistake(ratio).value_or(
           Mistake{"factor", fmt::format("everything is {:.6g} times what it should be: a constant is wrong", ratio)});
@@ -368,7 +368,7 @@ bool Checks::chiSquare(const std::string& name, const ChiSquare& test) {
     const int bin = isFinite(s) ? test.bin(s) : -1;
     counts[bin < 0 || bin >= static_cast<int>(bins) ? bins : static_cast<std::size_t>(bin)] += 1.0;
   }
-  // An event that a hypothesis excludes rules it out if it is the truth; a mistake may cause a share of such events
+  // An event that a hypothesis excludes rules it out if it is the reference; a mistake may cause a share of such events
   // besides.
   const auto statistic = [&](const std::vector<double>& shares, double least) {
     double sum = 0.0;

@@ -49,14 +49,14 @@ struct Twin {
   int probe = 0;
   int stride = 1;
   std::function<void(Random&, std::span<glm::vec4>)> draw = {};  ///< fills one point
-  Function truth = {};
+  Function reference = {};
   struct Wrong {
     Mistake mistake;
     Function value;
   };
   std::vector<Wrong> mistakes = {};
-  double tolerance =
-      1e-4;  ///< relative to |truth| plus a hundredth of its root mean square: float rounding, far below any mistake
+  double tolerance = 1e-4;  ///< relative to |reference| plus a hundredth of its root mean square: float rounding, far
+                            ///< below any mistake
   int points = 2048;
 };
 

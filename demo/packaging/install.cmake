@@ -103,7 +103,7 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "libgl1-mesa-dri, libosmesa6")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "gnuplot-nox | gnuplot")
 set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "\
 Lucerna walks through scenes lit by global illumination, renders pictures of
-them and measures what each technique costs and how far it is from the truth.
+them and measures what each technique costs and how far it is from the reference.
 It re-creates light propagation volumes, reflective shadow maps, radiosity by
 hemicubes and path tracing of participating media, as published and physically
 correct. No GPU is needed: Mesa's software renderer will do.")

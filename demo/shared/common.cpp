@@ -7,7 +7,7 @@
 #include "render/deviations.hpp"
 #include "shared/settings_file.hpp"
 
-#include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <charconv>
 #include <cmath>
@@ -71,11 +71,10 @@ void PictureOptions::declare(Command app) {
   const auto offerNames = [](Option option, const auto& names) {
     offer(option, std::vector<std::string>(names.begin(), names.end()));
   };
-  offerNames(
-      app.addOption("--technique", technique,
-                    "direct, rsm, lpv, irradiance-cache, radiosity or path; without it the one that alone reads a "
-                    "setting or deviation given, else irradiance-cache"),
-      techniqueNames());
+  offerNames(app.addOption("--technique", technique,
+                           fmt::format("{}; without it the one that alone reads a setting or deviation given, else {}",
+                                       fmt::join(techniqueNames(), ", "), kUsualTechnique)),
+             techniqueNames());
   offerNames(app.addOption("--component", component, "all, direct or indirect").showDefault(), namesOf(Component{}));
   offerNames(
       app.addOption("--fidelity", fidelity,

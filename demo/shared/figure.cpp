@@ -119,9 +119,9 @@ std::string figureHtml(const Figure& figure, std::size_t bytes) {
   facts["picture_size"] = {size.x, size.y};
   facts["block"] = block;
   std::string planes;
-  facts["truths"] = nlohmann::ordered_json::array();
+  facts["references"] = nlohmann::ordered_json::array();
   for (const FigureReference& reference : figure.references) {
-    const std::string key = fmt::format("r{}", facts["truths"].size());
+    const std::string key = fmt::format("r{}", facts["references"].size());
     planes += plane(key, floats(means(*reference.mean, block)));
     nlohmann::ordered_json json{{"name", reference.name}, {"error_scale", nullptr}};
     if (reference.standardError) {
@@ -129,20 +129,20 @@ std::string figureHtml(const Figure& figure, std::size_t bytes) {
       json["error_scale"] = halfScale(errors);
       planes += plane(key + "e", halves(errors, json["error_scale"].get<double>()));
     }
-    facts["truths"].push_back(std::move(json));
+    facts["references"].push_back(std::move(json));
   }
   facts["pictures"] = nlohmann::ordered_json::array();
-  std::map<std::pair<std::size_t, int>, std::vector<glm::dvec3>> truths;  // by reference and block
+  std::map<std::pair<std::size_t, int>, std::vector<glm::dvec3>> exactMeans;  // by reference and block
   for (const FigurePicture& p : figure.pictures) {
     const std::string key = fmt::format("p{}", facts["pictures"].size());
     const int within = p.isFirstChoice ? 1 : ofOthers, all = block * within;
-    std::vector<glm::dvec3>& truth = truths[{p.reference, all}];
-    if (truth.empty()) truth = means(*figure.references.at(p.reference).mean, all);
+    std::vector<glm::dvec3>& exact = exactMeans[{p.reference, all}];
+    if (exact.empty()) exact = means(*figure.references.at(p.reference).mean, all);
     std::vector<glm::dvec3> difference = means(*p.picture, all);
-    CHECK(difference.size() == truth.size(), "{} and {} pixels", difference.size(), truth.size());
-    for (std::size_t i = 0; i < truth.size(); ++i) difference[i] -= truth[i];
+    CHECK(difference.size() == exact.size(), "{} and {} pixels", difference.size(), exact.size());
+    for (std::size_t i = 0; i < exact.size(); ++i) difference[i] -= exact[i];
     nlohmann::ordered_json json{{"row", p.row},
-                                {"truth", p.reference},
+                                {"exact", p.reference},
                                 {"block", within},
                                 {"first_choice", p.isFirstChoice},
                                 {"scale", halfScale(difference)},

@@ -34,7 +34,7 @@ struct FigurePicture {
 
 struct Figure {
   nlohmann::ordered_json
-      facts;  ///< title, rows, yardsticks, references, exposure, provenance: the content of the command's JSON
+      facts;  ///< title, rows, baselines, references, exposure, provenance: the content of the command's JSON
   std::vector<FigureReference> references;  ///< at least one; all of the same size
   std::vector<FigurePicture> pictures;
 };

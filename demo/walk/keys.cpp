@@ -36,7 +36,7 @@ constexpr KeyBinding kKeys[] = {
     {'B', false, Action::sideBySide, "A and B side by side"},
     {'Z', false, Action::magnifier, "magnifier with values"},
     {'H', false, Action::nextView, "picture, signed error, relative error, z-score, FLIP"},
-    {'T', false, Action::truth, "live truth: a reference of this view while the camera rests"},
+    {'T', false, Action::liveReference, "live reference: a reference of this view while the camera rests"},
     {'I', false, Action::ask, "what lit the pixel under the cursor"},
     {'F', false, Action::fit, "show the whole picture again, after zooming"},
     {key::kEscape, false, Action::end, "stop the current work; otherwise quit"},

@@ -39,7 +39,7 @@ enum class Action {
   sideBySide,
   magnifier,
   nextView,
-  truth,
+  liveReference,
   ask,
   fit,
 };

@@ -206,7 +206,7 @@ void showSide(Ui& ui, WalkState& s, int index) {
   int shows = static_cast<int>(side.shows);
   if (menu(ui, "shows", shows, kShowsNames)) {
     side.shows = static_cast<Shows>(shows);
-    if (side.shows == Shows::reference) s.truthOn = true;
+    if (side.shows == Shows::reference) s.liveReferenceOn = true;
   }
   if (side.shows == Shows::picture) {
     textField(ui, "picture", side.pictureFile);
@@ -233,7 +233,7 @@ void showJudgement(WalkState& s, int index) {
   if (side.shows == Shows::reference || !s.isVisible(index)) return;
   const char* name = index == 0 ? "A" : "B";
   if (!side.judgement.known()) {
-    line(fmt::format("{}: waits for {} samples per pixel", name, Truth::kFewest));
+    line(fmt::format("{}: waits for {} samples per pixel", name, LiveReference::kFewest));
     return;
   }
   const measure::ErrorInterval& e = side.judgement.nrmse();
@@ -252,7 +252,7 @@ void showCompare(Ui& ui, WalkState& s) {
   if (menu(ui, "layout", layout, kLayoutNames)) s.layout = static_cast<Layout>(layout);
   if (menu(ui, "shown as", show, kShowNames)) {
     s.show = static_cast<Show>(show);
-    if (s.show != Show::picture) s.truthOn = true;
+    if (s.show != Show::picture) s.liveReferenceOn = true;
   }
   static constexpr std::array<std::string_view, 2> kSides{"A", "B"};
   menu(ui, "shown", s.shown, kSides);
@@ -263,21 +263,21 @@ void showCompare(Ui& ui, WalkState& s) {
     slider(ui, "colours end at", s.errorScale, 0.0f, 100.0f, s.errorScale > 0.0f ? "%.4g radiance" : "half of the mean",
            true);
   ImGui::Separator();
-  checkbox(ui, "live truth", s.truthOn);
+  checkbox(ui, "live reference", s.liveReferenceOn);
   explain(
       "While the camera rests, the path tracer computes the reference of this view; it is stored with the bench's "
       "references.");
-  slider(ui, "share of a frame", s.truthShare, 0.01f, 0.9f, "%.2f");
+  slider(ui, "share of a frame", s.referenceShare, 0.01f, 0.9f, "%.2f");
   explain(
       "Share of a frame's time for the path tracer while the picture is still being computed; on a still view it uses "
       "all idle time.");
-  if (!s.truthOn) return;
-  if (!s.truth || s.truth->samples() == 0) {
+  if (!s.liveReferenceOn) return;
+  if (!s.reference || s.reference->samples() == 0) {
     line("the reference: when the camera rests");
     return;
   }
-  line(fmt::format("reference: {} sample{} a pixel, {:.1f} s", s.truth->samples(), s.truth->samples() == 1 ? "" : "s",
-                   s.truth->seconds()));
+  line(fmt::format("reference: {} sample{} a pixel, {:.1f} s", s.reference->samples(),
+                   s.reference->samples() == 1 ? "" : "s", s.reference->seconds()));
   showJudgement(s, 0);
   showJudgement(s, 1);
 }
@@ -409,7 +409,7 @@ void showMemory(Ui& ui, WalkState& s) {
   for (int i = 0; i < 2; ++i)
     if (const SideState& side = s.sides[static_cast<std::size_t>(i)]; side.renderer)
       mebibytes(std::string(i == 0 ? "A, " : "B, ") + side.built.technique, side.renderer->gpuBytes());
-  if (s.truth) mebibytes("path tracer", s.truth->gpuBytes());
+  if (s.reference) mebibytes("path tracer", s.reference->gpuBytes());
   line(fmt::format("{:8.2f} MiB  in all", total / 1048576.0));
   const SideState& side = s.side();
   if (!side.renderer) return;
@@ -556,7 +556,7 @@ void Panel::showHelp(Ui& ui, WalkState& s) {
 void Panel::showMessage(const WalkState& s, const std::string& work, double share) {
   std::string text = work.empty() ? "" : work + " ... Escape stops it";
   if (work.empty() && !s.messages.empty() && s.messageAge < 8.0) text = s.messages.back();
-  else if (work.empty() && s.hint) text = "F1 keys, F2 panel, W A S D and dragging move, X wipe, T live truth";
+  else if (work.empty() && s.hint) text = "F1 keys, F2 panel, W A S D and dragging move, X wipe, T live reference";
   if (text.empty()) return;
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({8.0f, screen.y - 8.0f}, ImGuiCond_Always, {0.0f, 1.0f});
@@ -600,7 +600,7 @@ void Panel::showValues(const WalkState& s) {
   };
   value("A", s.values.a);
   value("B", s.values.b);
-  value("truth", s.values.truth);
+  value("reference", s.values.reference);
   value("+-", s.values.error);
   ImGui::End();
 }

@@ -7,7 +7,7 @@
 #include "walk/compare.hpp"
 #include "walk/free_camera.hpp"
 #include "walk/scene_views.hpp"
-#include "walk/truth.hpp"
+#include "walk/live_reference.hpp"
 
 #include <array>
 #include <deque>
@@ -38,7 +38,7 @@ struct SideState {
   std::optional<gl::Texture> picture;
   std::string pictureShown;  ///< the file of `picture`
   bool settled = false;  ///< the picture stays the same until something moves
-  std::uint64_t pictureVersion = 0, judgedPicture = 0, judgedTruth = 0;
+  std::uint64_t pictureVersion = 0, judgedPicture = 0, judgedReference = 0;
   Judgement judgement;
 };
 
@@ -95,10 +95,10 @@ struct WalkState {
   Glyphs glyphs = Glyphs::none;
   int glyphCascade = MAX_CASCADES - 1, glyphMost = 400;
 
-  // Truth
-  bool truthOn = false;
-  float truthShare = 0.1f;  ///< of a frame's time
-  std::unique_ptr<Truth> truth;
+  // Reference
+  bool liveReferenceOn = false;
+  float referenceShare = 0.1f;  ///< of a frame's time
+  std::unique_ptr<LiveReference> reference;
 
   // Window
   bool panel = true, help = false, hint = true;
@@ -127,7 +127,7 @@ struct WalkState {
   // Pixel under the cursor, for the magnifier.
   std::optional<glm::ivec2> pixel;  ///< from the picture's top left
   struct PixelValues {
-    std::optional<glm::vec3> a, b, truth, error;
+    std::optional<glm::vec3> a, b, reference, error;
   } values;
 
   void say(std::string message) {

@@ -62,7 +62,7 @@ WalkWindow::WalkWindow(const WalkOptions& options, Host& host, const gl::Context
 }
 
 WalkWindow::~WalkWindow() {
-  if (state_.truth) state_.truth->keep();
+  if (state_.reference) state_.reference->keep();
 }
 
 // ---------------------------------------------------------------------------------------------------- input
@@ -166,7 +166,7 @@ void WalkWindow::act(Action action) {
     case Action::radiosity: technique("radiosity"); break;
     case Action::path:
       s.sides[static_cast<std::size_t>(s.layout == Layout::one ? s.shown : 1)].shows = Shows::reference;
-      s.truthOn = true;
+      s.liveReferenceOn = true;
       break;
     case Action::undo:
       if (s.undo.empty()) break;
@@ -181,7 +181,7 @@ void WalkWindow::act(Action action) {
     case Action::nextView:
       s.show = static_cast<Show>((static_cast<int>(s.show) + 1) % static_cast<int>(kShowNames.size()));
       break;
-    case Action::truth: s.truthOn = !s.truthOn; break;
+    case Action::liveReference: s.liveReferenceOn = !s.liveReferenceOn; break;
     case Action::ask: s.askedPlace = input_.cursor; break;
     case Action::fit:
       s.zoom = 1.0f;
@@ -234,7 +234,7 @@ void WalkWindow::loadWantedScene() {
     const gl::BuildWatch watch([this](const std::string& name) { breathe("compiling " + name); });
     auto renderer = std::make_unique<Renderer>(context_, programs_, *scene, settings);
     // Nothing can fail from here on: the new scene replaces the old one.
-    state_.truth.reset();
+    state_.reference.reset();
     state_.countViews.reset();
     for (SideState& side : state_.sides) {
       side.renderer.reset();
@@ -273,7 +273,7 @@ void WalkWindow::make(SideState& side) {
       side.pictureShown = side.pictureFile;
       try {
         side.picture = textureOf("stored picture", readImage(side.pictureFile));
-        side.judgedTruth = 0;
+        side.judgedReference = 0;
         ++side.pictureVersion;
       } catch (const Error& error) { state_.say(error.what()); }
     }
@@ -307,7 +307,7 @@ void WalkWindow::make(SideState& side) {
     side.builtAs = wanted;
     side.settled = false;
     side.judgement.clear();
-    side.judgedTruth = 0;
+    side.judgedReference = 0;
     if (settings.exposure && first) state_.exposure = *settings.exposure;
   } catch (const Error& error) {
     if (first) throw;
@@ -345,8 +345,8 @@ void WalkWindow::makeReady() {
 const gl::Texture* WalkWindow::radianceOf(int index) const {
   const SideState& side = state_.sides[static_cast<std::size_t>(index)];
   if (side.shows == Shows::picture && side.picture) return &*side.picture;
-  if (side.shows == Shows::reference && state_.truth && state_.truth->samples() > 0 && still_ >= kStillFrames)
-    return &state_.truth->mean();
+  if (side.shows == Shows::reference && state_.reference && state_.reference->samples() > 0 && still_ >= kStillFrames)
+    return &state_.reference->mean();
   return side.renderer ? &side.renderer->radiance() : nullptr;
 }
 
@@ -363,7 +363,7 @@ void WalkWindow::draw() {
     SideState& side = state_.sides[static_cast<std::size_t>(i)];
     if (!state_.isVisible(i) || !side.renderer || (side.shows == Shows::picture && side.picture)) continue;
     const bool rests =
-        state_.truthOn && still_ > kStillFrames && side.settled && side.renderer->exposure() == state_.exposure;
+        state_.liveReferenceOn && still_ > kStillFrames && side.settled && side.renderer->exposure() == state_.exposure;
     if (rests) continue;
     side.renderer->setExposure(state_.exposure);
     side.renderer->render(state_.camera->camera());
@@ -382,58 +382,58 @@ bool WalkWindow::allSettled() const {
 
 // Everything counts: sampling, reading back, judging. While pictures are still changing, the reference gets at most its
 // share of the frames' own time; once they are still, all idle time.
-void WalkWindow::makeTruth(double frameSeconds) {
+void WalkWindow::makeReference(double frameSeconds) {
   constexpr double kIdleSeconds = 0.03;  // per frame, so that the panel still responds
   constexpr double kLongestFrame = 1.0;  // longer frames are something else, such as compiling
-  if (!state_.truthOn || !state_.side().renderer) return;
-  const double share = std::clamp(static_cast<double>(state_.truthShare), 0.01, 0.9);
-  const double submission = state_.truth ? state_.truth->submissionSeconds() : 0.0;
-  truthTime_.frame(frameSeconds, share, std::max(4.0 * submission, share * std::min(frameSeconds, kLongestFrame)));
+  if (!state_.liveReferenceOn || !state_.side().renderer) return;
+  const double share = std::clamp(static_cast<double>(state_.referenceShare), 0.01, 0.9);
+  const double submission = state_.reference ? state_.reference->submissionSeconds() : 0.0;
+  referenceTime_.frame(frameSeconds, share, std::max(4.0 * submission, share * std::min(frameSeconds, kLongestFrame)));
   if (still_ < kStillFrames) return;
   const bool idle = allSettled();
-  if (!idle && truthTime_.left() < submission) return;
+  if (!idle && referenceTime_.left() < submission) return;
   gl::finish();  // the picture's work must not count as the reference's
   auto start = Clock::now();
-  if (seekTruth()) start = Clock::now();  // compiling happens once and is not counted
-  if (state_.truth) state_.truth->advance(idle ? kIdleSeconds : truthTime_.left());
+  if (seekReference()) start = Clock::now();  // compiling happens once and is not counted
+  if (state_.reference) state_.reference->advance(idle ? kIdleSeconds : referenceTime_.left());
   judge();
-  if (idle) truthTime_.idle(secondsSince(start));
-  else truthTime_.spend(secondsSince(start));
+  if (idle) referenceTime_.idle(secondsSince(start));
+  else referenceTime_.spend(secondsSince(start));
 }
 
 /// Provides the path tracer for the current view. Returns whether it had to be made.
-bool WalkWindow::seekTruth() {
+bool WalkWindow::seekReference() {
   bool made = false;
   const SideState& shown = state_.side();
   const glm::ivec2 size = shown.renderer->size();
   const Component component = shown.renderer->settings().component;
-  if (!state_.truth || state_.truth->size() != size || state_.truth->component() != component ||
-      truthVersion_ != state_.sceneVersion) {
+  if (!state_.reference || state_.reference->size() != size || state_.reference->component() != component ||
+      referenceVersion_ != state_.sceneVersion) {
     try {
       breathe("making the path tracer");
       const gl::BuildWatch watch([this](const std::string& name) { breathe("compiling " + name); });
-      state_.truth.reset();
-      state_.truth = std::make_unique<Truth>(context_, programs_, *state_.scene, size, component);
-      truthVersion_ = state_.sceneVersion;
-      truthCamera_.reset();
+      state_.reference.reset();
+      state_.reference = std::make_unique<LiveReference>(context_, programs_, *state_.scene, size, component);
+      referenceVersion_ = state_.sceneVersion;
+      referenceCamera_.reset();
       made = true;
     } catch (const Error& error) {
-      state_.truthOn = false;
+      state_.liveReferenceOn = false;
       state_.say(error.what());
-    } catch (const Stopped&) { state_.truthOn = false; }
-    if (!state_.truth) return made;
+    } catch (const Stopped&) { state_.liveReferenceOn = false; }
+    if (!state_.reference) return made;
   }
-  if (!truthCamera_ || !sameView(*truthCamera_, state_.camera->camera())) {
-    truthCamera_ = state_.camera->camera();
-    state_.truth->look(*truthCamera_);
-    for (SideState& side : state_.sides) side.judgement.clear(), side.judgedTruth = 0;
+  if (!referenceCamera_ || !sameView(*referenceCamera_, state_.camera->camera())) {
+    referenceCamera_ = state_.camera->camera();
+    state_.reference->look(*referenceCamera_);
+    for (SideState& side : state_.sides) side.judgement.clear(), side.judgedReference = 0;
   }
   return made;
 }
 
 // At most twice a second, since pictures are read back.
 void WalkWindow::judge() {
-  if (!state_.truth || !state_.truth->ready()) return;
+  if (!state_.reference || !state_.reference->ready()) return;
   for (SideState& side : state_.sides) side.judgement.flip();  // takes up its FLIP picture once that is computed
   const double since = player_ ? kPlayedFrame * (frames_ - judgedFrame_) : secondsSince(judged_);
   if (since < 0.5) return;
@@ -442,11 +442,11 @@ void WalkWindow::judge() {
   for (int i = 0; i < 2; ++i) {
     SideState& side = state_.sides[static_cast<std::size_t>(i)];
     if (!state_.isVisible(i) || side.shows == Shows::reference) continue;
-    if (side.judgedTruth == state_.truth->version() && side.judgedPicture == side.pictureVersion) continue;
-    side.judgedTruth = state_.truth->version();
+    if (side.judgedReference == state_.reference->version() && side.judgedPicture == side.pictureVersion) continue;
+    side.judgedReference = state_.reference->version();
     side.judgedPicture = side.pictureVersion;
     if (side.shows == Shows::picture) {
-      if (!side.picture || side.picture->size2d() != state_.truth->size()) continue;
+      if (!side.picture || side.picture->size2d() != state_.reference->size()) continue;
       const std::vector<glm::vec4> texels = side.picture->readRgba();
       Image image(side.picture->size().x, side.picture->size().y);
       for (int y = 0; y < image.height; ++y)
@@ -454,9 +454,9 @@ void WalkWindow::judge() {
           image.at(x, image.height - 1 - y) =
               glm::vec3(texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
                                static_cast<std::size_t>(x)]);
-      side.judgement.judge(std::move(image), state_.truth->reference(), allSettled());
-    } else if (side.renderer && side.renderer->size() == state_.truth->size()) {
-      side.judgement.judge(side.renderer->readRadiance(), state_.truth->reference(), allSettled());
+      side.judgement.judge(std::move(image), state_.reference->reference(), allSettled());
+    } else if (side.renderer && side.renderer->size() == state_.reference->size()) {
+      side.judgement.judge(side.renderer->readRadiance(), state_.reference->reference(), allSettled());
     }
   }
 }
@@ -475,9 +475,9 @@ void WalkWindow::readPixel(const Compare::Inputs& inputs) {
   };
   state_.values.a = read(radianceOf(0));
   if (state_.layout != Layout::one || state_.shown == 1) state_.values.b = read(radianceOf(1));
-  if (state_.truth && state_.truthOn && still_ >= kStillFrames && state_.truth->samples() > 0) {
-    state_.values.truth = read(&state_.truth->mean());
-    state_.values.error = read(&state_.truth->standardError());
+  if (state_.reference && state_.liveReferenceOn && still_ >= kStillFrames && state_.reference->samples() > 0) {
+    state_.values.reference = read(&state_.reference->mean());
+    state_.values.error = read(&state_.reference->standardError());
   }
 }
 
@@ -550,9 +550,10 @@ void WalkWindow::drawLines(const Compare::Inputs& inputs) {
 
 void WalkWindow::compose() {
   SideState& shown = state_.side();
-  const bool truthThere = state_.truth && state_.truthOn && state_.truth->ready() && still_ >= kStillFrames;
-  const bool shows = state_.show == Show::picture || (truthThere && radianceOf(state_.shown) &&
-                                                      radianceOf(state_.shown)->size2d() == state_.truth->size());
+  const bool referenceThere =
+      state_.reference && state_.liveReferenceOn && state_.reference->ready() && still_ >= kStillFrames;
+  const bool shows = state_.show == Show::picture || (referenceThere && radianceOf(state_.shown) &&
+                                                      radianceOf(state_.shown)->size2d() == state_.reference->size());
   const bool stage = !state_.stage.empty() && shown.renderer;
   const bool counts = state_.countView != CountView::none && shown.renderer;
   const bool plain = !stage && !counts && state_.layout == Layout::one && (state_.show == Show::picture || !shows) &&
@@ -568,10 +569,10 @@ void WalkWindow::compose() {
   Compare::Inputs inputs;
   const auto side = [&](int i) {
     const SideState& s = state_.sides[static_cast<std::size_t>(i)];
-    Compare::Side result{radianceOf(i), truthThere ? state_.show : Show::picture, s.judgement.flipMap()};
-    const bool isReference = truthThere && result.radiance == &state_.truth->mean();
+    Compare::Side result{radianceOf(i), referenceThere ? state_.show : Show::picture, s.judgement.flipMap()};
+    const bool isReference = referenceThere && result.radiance == &state_.reference->mean();
     if (isReference || (result.show == Show::flip && !result.flip) ||
-        (result.radiance && truthThere && result.radiance->size2d() != state_.truth->size()))
+        (result.radiance && referenceThere && result.radiance->size2d() != state_.reference->size()))
       result.show = Show::picture;
     return result;
   };
@@ -583,10 +584,10 @@ void WalkWindow::compose() {
   inputs.zoom = state_.zoom;
   inputs.centre = state_.centre;
   inputs.exposure = state_.exposure;
-  if (truthThere) {
-    inputs.reference = &state_.truth->mean();
-    inputs.standardError = &state_.truth->standardError();
-    const glm::dvec3 mean = meanOf(state_.truth->reference().mean);
+  if (referenceThere) {
+    inputs.reference = &state_.reference->mean();
+    inputs.standardError = &state_.reference->standardError();
+    const glm::dvec3 mean = meanOf(state_.reference->reference().mean);
     inputs.errorScale = state_.errorScale > 0.0f
                             ? state_.errorScale
                             : std::max(0.5f * static_cast<float>(mean.x + mean.y + mean.z) / 3.0f, 1e-30f);
@@ -654,7 +655,7 @@ void WalkWindow::takeShot() {
     if (side.judgement.known())
       note += fmt::format("\nrelative error {:.4g}, {:.4g} to {:.4g} (99 %), against {} path-traced samples a pixel",
                           side.judgement.nrmse().value, side.judgement.nrmse().low, side.judgement.nrmse().high,
-                          state_.truth ? state_.truth->samples() : 0);
+                          state_.reference ? state_.reference->samples() : 0);
     writePngWithNote(stem.string() + ".png", shownPicture(view_), note);
     if (side.renderer) writeHdrWithNote(stem.string() + ".hdr", side.renderer->readRadiance(), note);
     state_.say(fmt::format("{}.png and .hdr written", stem.string()));
@@ -794,7 +795,7 @@ void WalkWindow::run() {
     moveCamera(dt);
     beginCapture();
     draw();
-    makeTruth(measured);
+    makeReference(measured);
     compose();
     recordVideo(dt);
     if (drawsUi()) {
@@ -854,15 +855,15 @@ nlohmann::ordered_json WalkWindow::toJson() const {
     json["touched"] = player_->touched();
     json["gone"] = player_->gone();
   }
-  if (state_.truth) {
-    json["truth"] = {{"samples", state_.truth->samples()},
-                     {"seconds", state_.truth->seconds()},
-                     {"seconds_in_frames", truthTime_.spent()},
-                     {"seconds_of_frames", truthTime_.rest()},
-                     {"longest_in_a_frame", truthTime_.longest()}};
+  if (state_.reference) {
+    json["reference"] = {{"samples", state_.reference->samples()},
+                         {"seconds", state_.reference->seconds()},
+                         {"seconds_in_frames", referenceTime_.spent()},
+                         {"seconds_of_frames", referenceTime_.rest()},
+                         {"longest_in_a_frame", referenceTime_.longest()}};
     for (std::size_t i = 0; i < 2; ++i)
       if (const Judgement& j = state_.sides[i].judgement; j.known())
-        json["truth"][i == 0 ? "a" : "b"] = {
+        json["reference"][i == 0 ? "a" : "b"] = {
             {"nrmse", j.nrmse().value}, {"low", j.nrmse().low}, {"high", j.nrmse().high}, {"bias", j.bias()}};
   }
   return json;

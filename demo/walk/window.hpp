@@ -1,5 +1,5 @@
 // The walkthrough in a window, or driven by recorded input on any host: camera path and free camera, panel, comparison
-// and live truth.
+// and live reference.
 #pragma once
 
 #include "base/clock.hpp"
@@ -43,8 +43,8 @@ class WalkWindow {
   void makeReady();
   void make(SideState& side);
   void draw();
-  void makeTruth(double frameSeconds);
-  bool seekTruth();
+  void makeReference(double frameSeconds);
+  bool seekReference();
   void judge();
   bool allSettled() const;
   void compose();
@@ -99,9 +99,9 @@ class WalkWindow {
   bool touched_ = false;  ///< there was input, so the walk does not end by itself
   bool stop_ = false;
   bool presented_ = false;  ///< compose() presented the renderer's own picture
-  std::optional<Camera> truthCamera_;  ///< the camera of the truth
-  std::uint64_t truthVersion_ = 0;  ///< version of the truth's scene
-  TimeShare truthTime_;
+  std::optional<Camera> referenceCamera_;  ///< the camera of the reference
+  std::uint64_t referenceVersion_ = 0;  ///< version of the reference's scene
+  TimeShare referenceTime_;
   int frames_ = 0;
   double seconds_ = 0.0, sinceHint_ = 0.0;
   int framesOfTitle_ = 0;

@@ -1,5 +1,5 @@
-// A picture's error against the truth when the truth is only known as a sampled reference (no GL): an estimate, and an
-// interval that contains the true error with a stated confidence.
+// A picture's error against the reference when the reference is only known as a sampled reference (no GL): an estimate,
+// and an interval that contains the true error with a stated confidence.
 //
 // d = image - reference at a pixel and channel, s its standard error in the reference. E[d^2 - s^2] is the true squared
 // error, without bias; its variance is 4 d^2 s^2 - 2 s^4 in the mean, if the reference's noise is normal [for d ~

@@ -192,14 +192,14 @@ PartErrors partErrorsOf(const Image& image, const Image& reference, const Image&
   checkSizes(image, reference);
   checkSizes(reference, standardError);
   CHECK(isPart.size() == image.pixels.size(), "{} marks for {} pixels", isPart.size(), image.pixels.size());
-  double count = 0.0, difference = 0.0, truth = 0.0, variance = 0.0, squares = 0.0, allSquares = 0.0;
+  double count = 0.0, difference = 0.0, light = 0.0, variance = 0.0, squares = 0.0, allSquares = 0.0;
   for (std::size_t i = 0; i < isPart.size(); ++i) {
     const glm::dvec3 r(reference.pixels[i]), d = glm::dvec3(image.pixels[i]) - r, e(standardError.pixels[i]);
     allSquares += sum(d * d);
     if (!isPart[i]) continue;
     count += 1.0;
     difference += sum(d) / 3.0;
-    truth += sum(r) / 3.0;
+    light += sum(r) / 3.0;
     squares += sum(d * d);
     const double error = sum(e) / 3.0;  // channels share their paths: their errors add as if fully correlated
     variance += error * error;
@@ -213,8 +213,8 @@ PartErrors partErrorsOf(const Image& image, const Image& reference, const Image&
     return part;
   }
   part.bias = difference / count;
-  part.relativeBias = ratio(difference, truth);
-  part.biasError = ratio(std::hypot(std::sqrt(variance), ownBiasError * std::sqrt(pixels * count)), truth);
+  part.relativeBias = ratio(difference, light);
+  part.biasError = ratio(std::hypot(std::sqrt(variance), ownBiasError * std::sqrt(pixels * count)), light);
   return part;
 }
 

@@ -10,7 +10,7 @@
 // A pixel that is not finite makes every measure NaN and is counted: nothing is clamped away.
 //
 // Averaged over blocks (blockMeans) the same measures show errors larger than single pixels; PartErrors shows which
-// pixels are too bright and which too dark; constantIrradiance() is the yardstick: one irradiance everywhere,
+// pixels are too bright and which too dark; constantIrradiance() is the baseline: one irradiance everywhere,
 // chosen by least squares.
 //
 // A sampled reference has noise of its own: E[measured mse] = mse + mean variance of the reference.

@@ -41,13 +41,13 @@ vec3 shown(bool right, vec2 place) {
   if (view == SHOW_PICTURE) return srgbFromLinear(filmic(exposure * radiance));
   if (view == SHOW_VALUES) return clamp(radiance, 0.0, 1.0);
   if (view == SHOW_FLIP) return heat((right ? texelFetch(rightFlip, texel, 0) : texelFetch(leftFlip, texel, 0)).r);
-  vec3 truth = texelFetch(reference, texel, 0).rgb;
+  vec3 reference = texelFetch(reference, texel, 0).rgb;
   vec3 noise = texelFetch(standardError, texel, 0).rgb;
-  float difference = luminance(radiance - truth);
+  float difference = luminance(radiance - reference);
   if (view == SHOW_SIGNED) return diverging(difference / errorScale);
   if (view == SHOW_RELATIVE) {
-    vec3 d = abs(radiance - truth);
-    return heat(max(d.x, max(d.y, d.z)) / max(max(truth.x, max(truth.y, truth.z)), 1e-30));
+    vec3 d = abs(radiance - reference);
+    return heat(max(d.x, max(d.y, d.z)) / max(max(reference.x, max(reference.y, reference.z)), 1e-30));
   }
   // In standard errors of the reference; grey where noise explains the difference. A pixel's channels are assumed to
   // rise and fall together.

@@ -139,8 +139,8 @@ TEST_F(Measure, BenchErrorReportsAndGoesOnWhereItWas) {
   EXPECT_EQ(report.at("model").size(), 5u);
   // What techniques must beat stands beside them: nothing scattered has 100 %, by pixels and in blocks, of all light
   // and inside each model.
-  ASSERT_EQ(report.at("yardsticks").size(), 2u);
-  const auto expectYardsticks = [](const nlohmann::json& black, const nlohmann::json& constant) {
+  ASSERT_EQ(report.at("baselines").size(), 2u);
+  const auto expectBaselines = [](const nlohmann::json& black, const nlohmann::json& constant) {
     EXPECT_NEAR(black.at("l2"), 1.0, 1e-5);
     EXPECT_NEAR(black.at("blocks").at("l2"), 1.0, 1e-5);
     EXPECT_FALSE(black.at("at_noise"));
@@ -148,9 +148,9 @@ TEST_F(Measure, BenchErrorReportsAndGoesOnWhereItWas) {
     EXPECT_GT(constant.at("l2").get<double>(), 0.0);
     EXPECT_LT(constant.at("l2").get<double>(), 1.0);
   };
-  expectYardsticks(report.at("yardsticks")[0], report.at("yardsticks")[1]);
+  expectBaselines(report.at("baselines")[0], report.at("baselines")[1]);
   ASSERT_EQ(report.at("inside_models").size(), 2u);  // direct light, and the gather's
-  for (const auto& model : report.at("inside_models")) expectYardsticks(model.at("black"), model.at("constant"));
+  for (const auto& model : report.at("inside_models")) expectBaselines(model.at("black"), model.at("constant"));
   for (const char* file : {"report.html", "error.csv", "error.json"})
     EXPECT_TRUE(fs::exists(path("out") + "/" + file)) << file;
   // A page of its own: nothing is fetched.
@@ -176,21 +176,21 @@ TEST_F(Measure, BenchErrorReportsAndGoesOnWhereItWas) {
   EXPECT_TRUE(nlohmann::json::accept(readFileText(rows[1])));
   EXPECT_EQ(json("error.json").at("rows").size(), report.at("rows").size());
 
-  // More is better, or the ladder says where not: by more than twice what the reference's noise gives.
-  const nlohmann::json ladders = json("error.json").at("ladders");
-  ASSERT_EQ(ladders.size(), 2u);
-  for (const auto& ladder : ladders) {
+  // More is better, or the sweep says where not: by more than twice what the reference's noise gives.
+  const nlohmann::json sweeps = json("error.json").at("sweeps");
+  ASSERT_EQ(sweeps.size(), 2u);
+  for (const auto& sweep : sweeps) {
     std::vector<const nlohmann::json*> steps;
     for (const auto& row : report.at("rows"))
-      if (row.at("series") == ladder.at("series")) steps.push_back(&row.at("inside_model"));
-    ASSERT_EQ(steps.size(), ladder.at("labels").size());
+      if (row.at("series") == sweep.at("series")) steps.push_back(&row.at("inside_model"));
+    ASSERT_EQ(steps.size(), sweep.at("labels").size());
     std::size_t rises = 0;
     for (std::size_t k = 1; k < steps.size(); ++k) {
       const auto of = [&](std::size_t i, const char* key) { return steps[i]->at(key).get<double>(); };
       if (steps[k]->at("at_noise") == true || steps[k - 1]->at("at_noise") == true) continue;
       rises += of(k, "l2") - of(k - 1, "l2") > 2.0 * std::hypot(of(k, "l2_error"), of(k - 1, "l2_error"));
     }
-    EXPECT_EQ(ladder.at("rises").size(), rises) << ladder;
+    EXPECT_EQ(sweep.at("rises").size(), rises) << sweep;
   }
 
   // Another scene or size is another bench.
@@ -203,7 +203,7 @@ TEST_F(Measure, PicturesThatAreAskedForAndFloors) {
   const std::string bench = "bench error '" + path("scene.obj") +
                             "' --size 32x16 --reference-spp 2048 --frames 1 --out '" + path("out") + "' --json '" +
                             path("error.json") + "' ";
-  ASSERT_EQ(RUN_LUCERNA(bench + "--rung 'rsm rsm.samples=20 rsm.interpolate=off' --floors").exitCode, 0);
+  ASSERT_EQ(RUN_LUCERNA(bench + "--point 'rsm rsm.samples=20 rsm.interpolate=off' --bounds").exitCode, 0);
   std::map<std::string, nlohmann::json> rows;
   const nlohmann::json report = json("error.json");
   for (const auto& row : report.at("rows")) rows[row.at("label")] = row;
@@ -221,9 +221,9 @@ TEST_F(Measure, PicturesThatAreAskedForAndFloors) {
     EXPECT_LT(rows.at(floor).at("l2").get<double>(), 0.5) << of;
   }
   EXPECT_TRUE(rows.contains("lpv, floor: exact radiance in the cells"));
-  EXPECT_NE(report.at("command").get<std::string>().find("--floors --rung"), std::string::npos);
-  expectOneLine(RUN_LUCERNA(bench + "--rung 'smoke a=1'"), 2, {"--rung", "smoke", "rsm"});
-  expectOneLine(RUN_LUCERNA(bench + "--rung 'rsm rsm.samplez=1'"), 2, {"rsm.samplez"});
+  EXPECT_NE(report.at("command").get<std::string>().find("--bounds --point"), std::string::npos);
+  expectOneLine(RUN_LUCERNA(bench + "--point 'smoke a=1'"), 2, {"--point", "smoke", "rsm"});
+  expectOneLine(RUN_LUCERNA(bench + "--point 'rsm rsm.samplez=1'"), 2, {"rsm.samplez"});
 }
 
 // A sun and an emissive lamp. Forward shading and RSM know no emissive surfaces: what they are judged by holds none of
@@ -289,12 +289,12 @@ TEST_F(Measure, TechniquesAreJudgedByTheLightThatTheyAreGiven) {
   }
 }
 
-TEST_F(Measure, RadiosityHasALadderAndDeviationsOfItsOwn) {
+TEST_F(Measure, RadiosityHasASweepAndDeviationsOfItsOwn) {
   ASSERT_EQ(RUN_LUCERNA(benchError("--techniques radiosity")).exitCode, 0);
   std::map<std::string, nlohmann::json> edges, resolutions;  // by the value of the setting that a series changes
-  const nlohmann::json ladder = json("error.json");
+  const nlohmann::json sweep = json("error.json");
   nlohmann::json published;
-  for (const auto& row : ladder.at("rows")) {
+  for (const auto& row : sweep.at("rows")) {
     EXPECT_EQ(row.at("technique"), "radiosity");
     EXPECT_FALSE(row.contains("inside_model")) << "sun and environment: it has all of this scene's lights";
     if (row.contains("published")) published = row;
@@ -355,8 +355,8 @@ TEST_F(Measure, ThePublishedRowOfALargeSceneIsOfACoarserModel) {
   scene.close();
   const RunResult result = RUN_LUCERNA(benchError("--techniques radiosity"));
   ASSERT_EQ(result.exitCode, 0) << result.err;
-  const nlohmann::json ladder = json("error.json");
-  const auto& rows = ladder.at("rows");
+  const nlohmann::json sweep = json("error.json");
+  const auto& rows = sweep.at("rows");
   const auto row = std::find_if(rows.begin(), rows.end(), [](const auto& r) { return r.contains("published"); });
   ASSERT_NE(row, rows.end());
   const auto& published = row->at("published");

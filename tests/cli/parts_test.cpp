@@ -223,7 +223,7 @@ TEST_F(FolderParts, BatchesOfReferencesAndRowsOfErrors) {
 
   // Rows, judged by those: a bench of one machine with the same references is the same but for times.
   for (const char* name : {"parts", "whole", "other", "half"}) fs::remove_all(path(name));
-  // The short form has no rows of paths, whose ladder takes its second in each run.
+  // The short form has no rows of paths, whose sweep takes its second in each run.
   const std::string bench = "bench error " + box + "--techniques direct,rsm" + (test::longTests() ? ",path" : "") +
                             " --small --reference-spp 32 --budget 1 --frames 1 ",
                     with = bench + "--references '" + path("one") + "' ";
@@ -236,7 +236,7 @@ TEST_F(FolderParts, BatchesOfReferencesAndRowsOfErrors) {
   const nlohmann::json a = json("report1/error.json"), b = json("report2/error.json");
   int same = 0;
   for (const auto& row : a.at("rows")) {
-    // A ladder of the path tracer goes as far as there is time.
+    // A sweep of the path tracer goes as far as there is time.
     const auto found = std::find_if(b.at("rows").begin(), b.at("rows").end(),
                                     [&](const auto& other) { return other.at("label") == row.at("label"); });
     if (found == b.at("rows").end()) {

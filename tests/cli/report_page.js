@@ -265,7 +265,7 @@ async function compareChecks(evaluate, press, state) {
     check(found && near(Number(text), value, digits), `${name} is shown as ${text} instead of ${value}`);
   }
   const p = await evaluate(`
-    const d = f.difference(1), t = f.truth(0);
+    const d = f.difference(1), t = f.reference(0);
     let s = 0, m = 0;
     for (let k = 0; k < d.length; ++k) {
       s += d[k] * d[k];
@@ -371,15 +371,15 @@ async function plotChecks(evaluate) {
   // Equal time, by a computation of its own.
   const entries = await evaluate('return f.tableData().ms');
   for (const s of entries.equalTime) {
-    const ladder = json.rows.filter(r => r.series === s.series && !r.at_noise && r.l2 > 0).sort((a, b) => a.ms - b.ms);
+    const sweep = json.rows.filter(r => r.series === s.series && !r.at_noise && r.l2 > 0).sort((a, b) => a.ms - b.ms);
     s.entries.forEach((e, k) => {
-      const t = entries.times[k], j = ladder.findIndex(r => r.ms >= t);
+      const t = entries.times[k], j = sweep.findIndex(r => r.ms >= t);
       if (!e) {
-        check(j < 1 || ladder.length < 2, `${s.series} at ${t} ms: no entry`);
+        check(j < 1 || sweep.length < 2, `${s.series} at ${t} ms: no entry`);
         return;
       }
       if (!e.interpolated) return;
-      const a = ladder[j - 1], b = ladder[j];
+      const a = sweep[j - 1], b = sweep[j];
       const expected = a.l2 * (b.l2 / a.l2) ** (Math.log(t / a.ms) / Math.log(b.ms / a.ms));
       check(near(e.value, expected, 1e-9), `${s.series} at ${t} ms: ${e.value} instead of ${expected}`);
     });
@@ -391,7 +391,7 @@ async function pixelChecks(evaluate) {
   const items = await evaluate('return f.items.length');
   for (let i = 1; i < items; ++i) {
     const p = await evaluate(`
-      const d = f.difference(${i}), t = f.truth(f.items[${i}].truth), v = f.flipMap(${i}), n = d.length;
+      const d = f.difference(${i}), t = f.reference(f.items[${i}].reference), v = f.flipMap(${i}), n = d.length;
       let s = 0, m = 0, b = 0;
       for (let k = 0; k < n; ++k) {
         s += d[k] * d[k];
@@ -413,15 +413,15 @@ async function pixelChecks(evaluate) {
   }
   // So is the reference's standard error.
   if (await evaluate('return f.facts.block') === 1) {
-    for (let t = 0; t < await evaluate('return f.facts.truths.length'); ++t) {
-      const truth = await evaluate(`
-        const rms = p => Math.sqrt(p.reduce((a, v) => a + v * v, 0) / p.length), t = f.truth(${t});
-        return {mean: t.reduce((a, v) => a + v, 0) / t.length, error: rms(f.truthError(${t}))}`);
+    for (let t = 0; t < await evaluate('return f.facts.references.length'); ++t) {
+      const reference = await evaluate(`
+        const rms = p => Math.sqrt(p.reduce((a, v) => a + v * v, 0) / p.length), t = f.reference(${t});
+        return {mean: t.reduce((a, v) => a + v, 0) / t.length, error: rms(f.referenceError(${t}))}`);
       const materials = t === 0 ? 'lambert' : 'all';
       const all = json.references.filter(r => r.transport === 'all' && r.materials === materials &&
-        near(r.mean.reduce((a, v) => a + v, 0) / 3, truth.mean, 1e-5));
-      check(all.length === 1 && near(all[0].pixel_error, truth.error, 1e-3),
-            `standard error of reference ${t} ${truth.error}: ${JSON.stringify(all)}`);
+        near(r.mean.reduce((a, v) => a + v, 0) / 3, reference.mean, 1e-5));
+      check(all.length === 1 && near(all[0].pixel_error, reference.error, 1e-3),
+            `standard error of reference ${t} ${reference.error}: ${JSON.stringify(all)}`);
     }
   }
 }
@@ -430,7 +430,7 @@ async function pixelChecks(evaluate) {
 async function cursorChecks(evaluate) {
   // Where a picture and the reference's noise are largest, off the edge: some pictures are black all over.
   const place = await evaluate(`
-    const e = f.truthError(0), best = {product: -1};
+    const e = f.referenceError(0), best = {product: -1};
     for (let i = 1; i < f.items.length; ++i) {
       const p = f.pixels(i);
       for (let y = 1; y < f.height - 1; ++y)
@@ -450,8 +450,8 @@ async function cursorChecks(evaluate) {
     const k = ${place.k}, i = ${place.i}, p = f.pixels(i);
     return {
       p: [p[3*k], p[3*k+1], p[3*k+2]],
-      t: f.truth(0)[3*k],
-      e: f.truthError(0)[3*k],
+      t: f.reference(0)[3*k],
+      e: f.referenceError(0)[3*k],
       z: f.mapValue(i, "z", k),
       label: f.label(i),
     }`);
@@ -459,9 +459,9 @@ async function cursorChecks(evaluate) {
   under.p.forEach((v, c) => {
     check(near(Number(line[c + 1]), v, 1e-4), `under the cursor ${line[c + 1]} instead of ${v}`);
   });
-  const [shownTruth, shownError] = [cells[1][1], cells[2][1]];
-  check(near(Number(shownTruth), under.t, 1e-4) && near(Number(shownError), under.e, 1e-4),
-        `reference ${shownTruth} +- ${shownError} instead of ${under.t} +- ${under.e}`);
+  const [shownReference, shownError] = [cells[1][1], cells[2][1]];
+  check(near(Number(shownReference), under.t, 1e-4) && near(Number(shownError), under.e, 1e-4),
+        `reference ${shownReference} +- ${shownError} instead of ${under.t} +- ${under.e}`);
   check(!Number.isFinite(under.z) || near(Number(line[7]), under.z, 6e-3),
         `z-score ${line[7]} instead of ${under.z}`);
   // What is read of one pixel alone, of pictures that are not decoded, is what the whole pictures hold.
@@ -545,7 +545,7 @@ async function keyChecks(evaluate, press, state, screenshots) {
     check(near(after, factor * before, 1e-9), `key ${key}: ${label} ${before} to ${after}`);
   };
   // Each method beside the reference that judges it: in the set from the start, and by key 0.
-  const judged = await evaluate('return f.items.map((item, i) => (i > 0 ? f.picture(i).truth : 0))');
+  const judged = await evaluate('return f.items.map((item, i) => (i > 0 ? f.picture(i).reference : 0))');
   const set = (await state()).chosen;
   check(set.every(i => set.includes(i > 0 ? 0 - judged[i] : i)), `in the set ${set}, judged by ${judged}`);
   for (const i of [...judged.keys()].slice(1)) {
@@ -553,19 +553,19 @@ async function keyChecks(evaluate, press, state, screenshots) {
     await expectKey('0', 'reference', (a, b) => b.current === 0 - judged[i]);
   }
   await evaluate('f.show(0)');
-  const truths = await evaluate('return f.facts.truths.map(t => t.name)');
-  for (let k = 1; k <= truths.length; ++k) {
+  const references = await evaluate('return f.facts.references.map(t => t.name)');
+  for (let k = 1; k <= references.length; ++k) {
     await press('0');
     const shown = await evaluate(`
       const i = f.state.current, line = f.list.querySelector('[data-item="' + i + '"]');
-      return {label: f.label(i), list: line.children[2].textContent, same: f.pixels(i) === f.truth(-i)}`);
-    check(shown.label === truths[k % truths.length] && shown.list === shown.label && shown.same,
+      return {label: f.label(i), list: line.children[2].textContent, same: f.pixels(i) === f.reference(-i)}`);
+    check(shown.label === references[k % references.length] && shown.list === shown.label && shown.same,
           `key 0 again: ${JSON.stringify(shown)}`);
   }
   // Methods.
   for (let k = 1; k <= 9; ++k)
     await expectKey(String(k), 'method', (a, b) => b.current === (k < items ? k : a.current));
-  const order = [...truths.keys()].map(t => 0 - t).concat([...judged.keys()].slice(1));
+  const order = [...references.keys()].map(t => 0 - t).concat([...judged.keys()].slice(1));
   const places = order.length;
   await expectKey('n', 'next', (a, b) => b.current === order[(order.indexOf(a.current) + 1) % places]);
   await expectKey('b', 'before', (a, b) => b.current === order[(order.indexOf(a.current) + places - 1) % places]);

@@ -238,8 +238,8 @@ TEST_F(BenchDiff, WhatIsAtTheNoiseIsABound) {
   EXPECT_EQ(verdicts_.at("gone").size(), 1u);
 }
 
-// A ladder of path tracing goes as far as there is time: a slower second run has fewer rungs, and nothing is lost.
-TEST_F(BenchDiff, ALadderThatHadLessTimeIsNoLoss) {
+// A sweep of path tracing goes as far as there is time: a slower second run has fewer points, and nothing is lost.
+TEST_F(BenchDiff, ASweepThatHadLessTimeIsNoLoss) {
   const auto report = [](std::initializer_list<int> samples) {
     nlohmann::json r = reportOf(0.01);
     for (int spp : samples) {
@@ -256,10 +256,10 @@ TEST_F(BenchDiff, ALadderThatHadLessTimeIsNoLoss) {
   EXPECT_EQ(diff(), 0) << err_;
   EXPECT_EQ(verdicts_.at("not_reached"), nlohmann::json({"path spp=8", "path spp=16"}));
   EXPECT_TRUE(verdicts_.at("gone").empty());
-  write("b.json", report({1, 2, 8}));  // a rung in the middle is missed
+  write("b.json", report({1, 2, 8}));  // a point in the middle is missed
   EXPECT_EQ(diff(), 1) << err_;
   EXPECT_EQ(verdicts_.at("gone"), nlohmann::json({"path spp=4"}));
-  write("b.json", report({}));  // as is a whole ladder
+  write("b.json", report({}));  // as is a whole sweep
   EXPECT_EQ(diff(), 1) << err_;
   EXPECT_EQ(verdicts_.at("gone").size(), 5u);
 }

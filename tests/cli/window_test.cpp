@@ -334,32 +334,33 @@ TEST_F(Window, SizesOfAllKinds) {
 
 // While the camera rests the reference comes, and the picture's error with its interval; what was sampled is in the
 // cache for the next time.
-TEST_F(Window, TruthComesWhileTheCameraRests) {
+TEST_F(Window, TheReferenceComesWhileTheCameraRests) {
   write("input.txt", "1 key R\n2 key T\n100 key F2\n");
   const RunResult result = play(path("input.txt"), "--technique direct", "", "64x36");
   ASSERT_EQ(result.exitCode, 0) << result.err;
-  const auto truth = json().at("window").at("truth");
-  EXPECT_GE(truth.at("samples"), 64) << truth;
-  const double value = truth.at("a").at("nrmse"), low = truth.at("a").at("low"), high = truth.at("a").at("high");
+  const auto reference = json().at("window").at("reference");
+  EXPECT_GE(reference.at("samples"), 64) << reference;
+  const double value = reference.at("a").at("nrmse"), low = reference.at("a").at("low"),
+               high = reference.at("a").at("high");
   EXPECT_GT(value, 0.05) << "direct light alone lacks what surfaces throw on each other";
   EXPECT_LE(low, value);
   EXPECT_LE(value, high);
   EXPECT_LT(high - low, 0.5 * value);
-  EXPECT_LT(truth.at("a").at("bias"), 0.0);
+  EXPECT_LT(reference.at("a").at("bias"), 0.0);
   EXPECT_FALSE(fs::is_empty(path("references")));
 }
 
-// While the picture is still being made the truth keeps to its share of what the frames take by themselves, which its
-// own clock says: 0.1, but for what was begun last and is paid back later.
-TEST_F(Window, TruthTakesItsShareOfFramesAlone) {
+// While the picture is still being made the reference keeps to its share of what the frames take by themselves, which
+// its own clock says: 0.1, but for what was begun last and is paid back later.
+TEST_F(Window, TheReferenceTakesItsShareOfFramesAlone) {
   write("input.txt", "1 key R\n2 key T\n200 key F2\n");
   const RunResult result = play(path("input.txt"), "--technique irradiance-cache --set cache.samples=65536");
   ASSERT_EQ(result.exitCode, 0) << result.err;
-  const auto truth = json().at("window").at("truth");
-  const double spent = truth.at("seconds_in_frames"), frames = truth.at("seconds_of_frames"),
-               longest = truth.at("longest_in_a_frame");
+  const auto reference = json().at("window").at("reference");
+  const double spent = reference.at("seconds_in_frames"), frames = reference.at("seconds_of_frames"),
+               longest = reference.at("longest_in_a_frame");
   EXPECT_GT(spent, 0.0);
-  EXPECT_LE(spent, 0.1 * frames + longest) << truth;
+  EXPECT_LE(spent, 0.1 * frames + longest) << reference;
 }
 
 TEST_F(Window, AFileThatFailsSaysWhyAndTheSceneStays) {

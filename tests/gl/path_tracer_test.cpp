@@ -244,7 +244,7 @@ TEST_F(PathTracerTest, TheErrorFallsWithTheRootOfTheSamplesAndIsHonest) {
   PathTracer::Settings settings = sized(24);
   settings.pixelCentres = true;
   const PathTracer reference = tracer(scene, openBoxCamera(), settings, 1024);
-  const Image truth = reference.mean();
+  const Image exact = reference.mean();
   settings.seed = 9;
   PathTracer picture(context(), library(), scene, settings);
   picture.setCamera(openBoxCamera());
@@ -257,7 +257,7 @@ TEST_F(PathTracerTest, TheErrorFallsWithTheRootOfTheSamplesAndIsHonest) {
     const Image mean = picture.mean();
     double sum = 0.0;
     for (std::size_t i = 0; i < mean.pixels.size(); ++i) {
-      const glm::dvec3 d = glm::dvec3(mean.pixels[i]) - glm::dvec3(truth.pixels[i]);
+      const glm::dvec3 d = glm::dvec3(mean.pixels[i]) - glm::dvec3(exact.pixels[i]);
       sum += glm::dot(d, d) / (3.0 * static_cast<double>(mean.pixels.size()));
     }
     const double expected = std::hypot(error, reference.statistics().standardError);

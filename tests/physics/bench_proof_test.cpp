@@ -70,7 +70,7 @@ class BenchProof : public test::SharedProgramsTest {
 // run before: compiling and the first submissions are baking, as `bench error` has it. At the end of a run lanes wait
 // for its longest path, a cost that does not grow with the samples: over 64x64 pixels it is small from 16 samples on
 // (over 32x32 and in passes that double, 32 cost 1.4 times what they do in a long run, and the slope by time was -0.52
-// to -0.56). The short form has fewer rungs and none of the times, whose slope takes long runs to be seen.
+// to -0.56). The short form has fewer points and none of the times, whose slope takes long runs to be seen.
 TEST_F(BenchProof, ErrorFallsWithSlopeMinusOneHalfOverTwoDecades) {
   const bool isLong = test::longTests();
   const Scene scene = loadScene(LUCERNA_SOURCE_DIR "/assets/cornell/cornell.json");
@@ -91,9 +91,10 @@ TEST_F(BenchProof, ErrorFallsWithSlopeMinusOneHalfOverTwoDecades) {
     t.record(samples);
     return Painted{t.mean(), static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC};
   };
-  measure::BatchMean truth;
-  for (std::uint32_t batch = 0; batch < 16; ++batch) truth.add(paint(1000000 + batch, isLong ? 512 : 64).mean);
-  const measure::ReferenceNoise noise = measure::noiseOf(truth.mean(), truth.standardError(), truth.meanError());
+  measure::BatchMean reference;
+  for (std::uint32_t batch = 0; batch < 16; ++batch) reference.add(paint(1000000 + batch, isLong ? 512 : 64).mean);
+  const measure::ReferenceNoise noise =
+      measure::noiseOf(reference.mean(), reference.standardError(), reference.meanError());
   std::vector<double> samples, seconds, errors;
   for (std::uint32_t n = 16; n <= (isLong ? 4096u : 256u); n *= 2) {
     double mse = 0.0;
@@ -101,7 +102,7 @@ TEST_F(BenchProof, ErrorFallsWithSlopeMinusOneHalfOverTwoDecades) {
     const std::uint32_t seeds = std::max(1u, 128u / n);  // few samples have the widest spread of errors
     for (std::uint32_t seed = 0; seed < seeds; ++seed) {
       const Painted painted = paint(100 * n + seed, n);
-      const double nrmse = measure::lessNoise(measure::errorsOf(painted.mean, truth.mean()), noise).nrmse;
+      const double nrmse = measure::lessNoise(measure::errorsOf(painted.mean, reference.mean()), noise).nrmse;
       mse += nrmse * nrmse / seeds;
       times.push_back(painted.seconds);
     }
@@ -111,14 +112,14 @@ TEST_F(BenchProof, ErrorFallsWithSlopeMinusOneHalfOverTwoDecades) {
   }
   const measure::Slope bySamples = measure::logLogSlope(samples, errors),
                        byTime = measure::logLogSlope(seconds, errors);
-  std::string rungs;
-  for (std::size_t i = 0; i < errors.size(); ++i) rungs += fmt::format(" {:.4f} in {:.4f} s,", errors[i], seconds[i]);
+  std::string points;
+  for (std::size_t i = 0; i < errors.size(); ++i) points += fmt::format(" {:.4f} in {:.4f} s,", errors[i], seconds[i]);
   std::printf("samples^(%.3f +- %.3f), seconds^(%.3f +- %.3f): NRMSE%s\n", bySamples.slope, bySamples.error,
-              byTime.slope, byTime.error, rungs.c_str());
-  EXPECT_NEAR(bySamples.slope, -0.5, 0.05) << "+- " << bySamples.error << ", NRMSE" << rungs;
+              byTime.slope, byTime.error, points.c_str());
+  EXPECT_NEAR(bySamples.slope, -0.5, 0.05) << "+- " << bySamples.error << ", NRMSE" << points;
   if (!isLong) return;
-  EXPECT_NEAR(byTime.slope, -0.5, 0.05) << "+- " << byTime.error << ", NRMSE" << rungs;
-  EXPECT_GE(seconds.back() / seconds.front(), 100.0) << rungs;
+  EXPECT_NEAR(byTime.slope, -0.5, 0.05) << "+- " << byTime.error << ", NRMSE" << points;
+  EXPECT_GE(seconds.back() / seconds.front(), 100.0) << points;
 }
 
 // Six seeds, each within 3 standard errors: all of them fail to be with probability 6 * 0.0027 = 1.6 %; the seeds are
@@ -150,13 +151,14 @@ TEST_F(BenchProof, PathTracingAsPublishedIsBiased) {
     t->record(samples);
     return t;
   };
-  measure::BatchMean truth;
-  for (std::uint32_t batch = 0; batch < 16; ++batch) truth.add(paint(false, 1000 + batch, 32)->mean());
-  const measure::ReferenceNoise noise = measure::noiseOf(truth.mean(), truth.standardError(), truth.meanError());
+  measure::BatchMean reference;
+  for (std::uint32_t batch = 0; batch < 16; ++batch) reference.add(paint(false, 1000 + batch, 32)->mean());
+  const measure::ReferenceNoise noise =
+      measure::noiseOf(reference.mean(), reference.standardError(), reference.meanError());
   for (const bool original : {false, true}) {
     const auto t = paint(original, 1, 128);
-    const measure::JudgedErrors e =
-        measure::lessNoise(measure::errorsOf(t->mean(), truth.mean()), noise, channelMean(t->statistics().meanError));
+    const measure::JudgedErrors e = measure::lessNoise(measure::errorsOf(t->mean(), reference.mean()), noise,
+                                                       channelMean(t->statistics().meanError));
     std::printf("%s: bias %+.2f %% +- %.2f\n", original ? "as published" : "corrected", 100.0 * e.measured.relativeBias,
                 100.0 * e.biasError / e.measured.referenceMean);
     EXPECT_EQ(e.biasAtNoise, !original);

@@ -224,15 +224,15 @@ TEST(SquareErrors, AreWhatDrawnReferencesShow) {
   constexpr int kPixels = 200, kDraws = 2000;
   std::mt19937 random(5);
   std::normal_distribution<float> normal;
-  Image truth(kPixels, 1), picture(kPixels, 1), error(kPixels, 1);
+  Image exact(kPixels, 1), picture(kPixels, 1), error(kPixels, 1);
   for (int i = 0; i < kPixels; ++i) {
-    truth.at(i, 0) = glm::vec3(1.0f + 0.01f * static_cast<float>(i));
-    picture.at(i, 0) = truth.at(i, 0) * (i % 2 ? 1.2f : 0.95f);
-    error.at(i, 0) = 0.05f * truth.at(i, 0);
+    exact.at(i, 0) = glm::vec3(1.0f + 0.01f * static_cast<float>(i));
+    picture.at(i, 0) = exact.at(i, 0) * (i % 2 ? 1.2f : 0.95f);
+    error.at(i, 0) = 0.05f * exact.at(i, 0);
   }
   double sum = 0.0, squares = 0.0, foretold = 0.0;
   for (int n = 0; n < kDraws; ++n) {
-    Image reference = truth;
+    Image reference = exact;
     for (int i = 0; i < kPixels; ++i) reference.at(i, 0) += normal(random) * error.at(i, 0);  // channels as one
     const double rmse = errorsOf(picture, reference).rmse;
     sum += rmse * rmse;

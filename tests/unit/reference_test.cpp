@@ -22,9 +22,9 @@ using namespace lucerna::measure;
 constexpr int kReferenceWidth = 24, kReferenceHeight = 16;
 constexpr double kDeviation = 0.5;
 
-float truth(int x, int y) { return 1.0f + 0.05f * static_cast<float>(x + y); }
+float reference(int x, int y) { return 1.0f + 0.05f * static_cast<float>(x + y); }
 
-/// A technique without bias: samples of standard deviation 0.5 about the truth, times `gain`. Reproducible by path
+/// A technique without bias: samples of standard deviation 0.5 about the reference, times `gain`. Reproducible by path
 /// number.
 Sampler noisy(double gain = 1.0, int* calls = nullptr) {
   return [gain, calls](std::uint64_t first, std::uint32_t samples) {
@@ -36,7 +36,7 @@ Sampler noisy(double gain = 1.0, int* calls = nullptr) {
       for (int y = 0; y < kReferenceHeight; ++y)
         for (int x = 0; x < kReferenceWidth; ++x)
           for (int c = 0; c < 3; ++c)
-            image.at(x, y)[c] += static_cast<float>(gain * (truth(x, y) + normal(random)) / samples);
+            image.at(x, y)[c] += static_cast<float>(gain * (reference(x, y) + normal(random)) / samples);
     }
     return image;
   };
@@ -45,7 +45,7 @@ Sampler noisy(double gain = 1.0, int* calls = nullptr) {
 Image exact(double gain = 1.0) {
   Image image(kReferenceWidth, kReferenceHeight);
   for (int y = 0; y < kReferenceHeight; ++y)
-    for (int x = 0; x < kReferenceWidth; ++x) image.at(x, y) = glm::vec3(static_cast<float>(gain) * truth(x, y));
+    for (int x = 0; x < kReferenceWidth; ++x) image.at(x, y) = glm::vec3(static_cast<float>(gain) * reference(x, y));
   return image;
 }
 
@@ -66,7 +66,7 @@ TEST(Reference, ItsStandardErrorIsThatOfTheSamples) {
   const ReferenceNoise noise = noiseOf(r.mean, r.standardError, r.meanError);
   // 1152 values of 15 degrees of freedom each: the mean variance is known to sqrt(2 / 15 / 1152) = 1.1 %; 5 of that.
   EXPECT_NEAR(noise.variance, kDeviation * kDeviation / 256.0, 0.055 * kDeviation * kDeviation / 256.0);
-  // The mean's error comes from 16 batch means: chi with 15 degrees of freedom, within 0.45 .. 1.65 of the truth at
+  // The mean's error comes from 16 batch means: chi with 15 degrees of freedom, within 0.45 .. 1.65 of the reference at
   // 1e-4 a side.
   const double expected = kDeviation / std::sqrt(256.0 * 3.0 * kReferenceWidth * kReferenceHeight);
   EXPECT_GT(r.meanError, 0.45 * expected);

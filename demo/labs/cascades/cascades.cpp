@@ -61,7 +61,7 @@ void check(Checks& c) {
                   for (int k = 0; k < 3; ++k) q[k] = (std::floor(r.uniform(-30, 30)) + r.uniform(0.02, 0.98) - 0.5) * s;
                   p[0] = four(q, s);
                 },
-            .truth = of([](double x, double s) { return std::floor(x / s + 0.5) * s; }),
+            .reference = of([](double x, double s) { return std::floor(x / s + 0.5) * s; }),
             .mistakes = {{{"truncation",
                            "int() truncates towards zero: left of the origin the grid is a cell off, and jumps as the "
                            "camera crosses it"},
@@ -102,7 +102,7 @@ void check(Checks& c) {
                  m = std::log2(most(glm::dvec3(p[0]) - glm::dvec3(p[1])) / e);
                } while (std::abs(m - std::round(m)) < 1e-4);
              },
-         .truth = ofMost,
+         .reference = ofMost,
          .mistakes = {
              {{"round-cascades", "the cascades are cubes: the largest of the three distances counts"},
               of([](const glm::dvec3& v) { return glm::length(v); }, 2.0, -1)},
@@ -135,7 +135,7 @@ void check(Checks& c) {
                   p[1] = four(r.direction() * 2.0, r.uniform(0.1, 0.6)),
                   p[0] = four(glm::dvec3(p[1]) + inCube(r) * 1.2 * e, e);
                 },
-            .truth = of([](const glm::dvec3& o, double b) { return std::clamp((1.0 - most(o)) / b, 0.0, 1.0); }),
+            .reference = of([](const glm::dvec3& o, double b) { return std::clamp((1.0 - most(o)) / b, 0.0, 1.0); }),
             .mistakes =
                 {{{"round-cascades", "a cascade is a cube: the largest of the three distances counts"},
                   of([](const glm::dvec3& o, double b) { return std::clamp((1.0 - glm::length(o)) / b, 0.0, 1.0); })},
@@ -172,7 +172,7 @@ void check(Checks& c) {
                             p[0] = four(r.uniform(0.1, 3), s, r.uniform(0.1, 3), s * r.uniform(1.5, 3.0)),
                             p[1] = four(r.uniform());
                           },
-                      .truth = of(BLEND { return w * f / (fc * fc) + (1 - w) * g / (gc * gc); }),
+                      .reference = of(BLEND { return w * f / (fc * fc) + (1 - w) * g / (gc * gc); }),
                       .mistakes = {{{"sum-of-cascades", "both cascades hold the same light: their sum counts it twice"},
                                     of(BLEND { return f / (fc * fc) + g / (gc * gc) + 0.0 * w; })},
                                    {{"weights-exchanged", "the weight is that of the fine cascade"},
@@ -204,7 +204,7 @@ void check(Checks& c) {
                p[0] = four(std::floor(r.uniform(0, n)), n, r.uniform(0.05, 1), r.uniform(10, 500)),
                p[1] = four(r.uniform());
              },
-         .truth = of([](double t, double n, double f, double l) {
+         .reference = of([](double t, double n, double f, double l) {
            return l * n * std::pow(f / n, t) + (1 - l) * (n + (f - n) * t);
          }),
          .mistakes = {{{"schemes-exchanged", "lambda belongs to the logarithmic scheme"},
@@ -251,7 +251,7 @@ void check(Checks& c) {
                                                   p[0] = four(q * e * (r.uniform() < 0.5 ? 1.0 : 2.0), e),
                                                   p[1] = four(r.uniform(0.1, 0.5), r.uniform(0.1, 1.0));
                                                 },
-                                            .truth =
+                                            .reference =
                                                 [](Point p) {
                                                   const glm::dvec3 q(p[0]);
                                                   return glm::dvec4(shown(q * 0.9999, p[0].w, p[1].x),

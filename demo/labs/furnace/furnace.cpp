@@ -54,7 +54,7 @@ void check(Checks& c) {
                   p[0] = withW({r.uniform(), r.uniform(), r.uniform()}), p[1] = withW(r.direction()),
                   p[2] = withW(r.direction()), p[3] = withW({r.uniform(0, 5), r.uniform(0, 5), r.uniform(0, 5)});
                 },
-            .truth = formula(1.0 / kPi, clamped),
+            .reference = formula(1.0 / kPi, clamped),
             .mistakes = {{lostPi, formula(1.0, clamped)},
                          {lostCosine, formula(1.0 / kPi, [](double) { return 1.0; })},
                          {noClamp, formula(1.0 / kPi, [](double x) { return x; })},
@@ -139,7 +139,7 @@ void check(Checks& c) {
            {.probe = 4,
             .stride = 2,
             .draw = [](Random& r, std::span<glm::vec4> p) { p[0] = withW(r.direction()), p[1] = withW(r.direction()); },
-            .truth = of([](double x) { return std::max(0.0, x) / kPi; }),
+            .reference = of([](double x) { return std::max(0.0, x) / kPi; }),
             .mistakes = {{lostPi, of([](double x) { return std::max(0.0, x); })},
                          {noClamp, of([](double x) { return x / kPi; })},
                          {absolute, of([](double x) { return std::abs(x) / kPi; })},
@@ -168,7 +168,7 @@ void check(Checks& c) {
                p[0] = withW(r.direction() * r.uniform(1.0, 4.0)), p[1] = withW(r.direction() * r.uniform(0.0, 0.8)),
                p[2] = withW(r.direction());
              },
-         .truth = of([](double x, double d) { return std::max(0.0, x) / (d * d); }),
+         .reference = of([](double x, double d) { return std::max(0.0, x) / (d * d); }),
          .mistakes = {
              {lostCosine, of([](double, double d) { return 1.0 / (d * d); })},
              {{"distance-not-squared", "the distance counts once: 1 / d^2, and the cosine needs vectors of length 1"},
@@ -192,7 +192,7 @@ void check(Checks& c) {
                 [](Random& r, std::span<glm::vec4> p) {
                   p[0] = withW({r.uniform(0.1, 3.0), r.uniform(0.0, 0.99), std::floor(r.uniform(0.0, 30.0))});
                 },
-            .truth = of([](double e, double a, int n) { return e * (1.0 - std::pow(a, n + 1)) / (1.0 - a); }),
+            .reference = of([](double e, double a, int n) { return e * (1.0 - std::pow(a, n + 1)) / (1.0 - a); }),
             .mistakes = {{{"infinite-sum", "that is the sum over all bounces"},
                           of([](double e, double a, int) { return e / (1.0 - a); })},
                          {{"one-too-few", "one bounce is missing: light that was never reflected counts as bounce 0"},

@@ -34,7 +34,7 @@ void check(Checks& c) {
 
   const glm::dvec3 axis = glm::normalize(glm::dvec3(c.parameter("ax", -1, 1), c.parameter("ay", -1, 1), 0.8));
   const glm::dvec3 normal = glm::normalize(glm::dvec3(c.parameter("nx", -1, 1), c.parameter("ny", -1, 1), 0.5));
-  const glm::dvec4 truth = joined(std::sqrt(4.0 * kPi) * base, std::sqrt(4.0 * kPi / 3.0) * slope * axis);
+  const glm::dvec4 reference = joined(std::sqrt(4.0 * kPi) * base, std::sqrt(4.0 * kPi / 3.0) * slope * axis);
   const std::vector<glm::vec4> environment{inFloat({axis.x, axis.y, axis.z, slope}),
                                            glm::vec4(static_cast<float>(base), 0, 0, 0)};
   const auto with = [&](glm::dvec4 v) {
@@ -51,7 +51,7 @@ void check(Checks& c) {
         "basis at points",
         {.probe = 1,
          .draw = [](Random& r, std::span<glm::vec4> p) { p[0] = inFloat(glm::dvec4(r.direction(), 0.0)); },
-         .truth = of(kY0, kY1),
+         .reference = of(kY0, kY1),
          .mistakes = {{{"lost-normalisation",
                         "the functions are not normalised: the square of each must integrate to 1 over the sphere"},
                        of(1.0, 1.0)},
@@ -72,7 +72,7 @@ void check(Checks& c) {
         "lobe at points",
         {.probe = 3,
          .draw = [](Random& r, std::span<glm::vec4> p) { p[0] = inFloat(glm::dvec4(r.direction(), 0.0)); },
-         .truth = of(kLobe0, kLobe1),
+         .reference = of(kLobe0, kLobe1),
          .mistakes = {{{"delta", "that is a direction, not a lobe: multiply band 0 by pi and band 1 by 2 pi / 3"},
                        of(kY0, kY1)},
                       {{"over-pi", "that is the lobe over pi: it integrates to 1, the cosine to pi"},
@@ -99,7 +99,7 @@ void check(Checks& c) {
                p[0] = inFloat(glm::dvec4(r.direction(), 0.0)),
                p[1] = glm::vec4(r.uniform(0, 4), r.uniform(0.05, 2), 0, 0);
              },
-         .truth = of([](double l, double pdf) { return l / pdf; }),
+         .reference = of([](double l, double pdf) { return l / pdf; }),
          .mistakes = {{{"lost-density", "the density is missing: an estimate is value / density"},
                        of([](double l, double) { return l; })},
                       {{"times-density", "divide by the density, do not multiply"},
@@ -108,14 +108,14 @@ void check(Checks& c) {
                       {{"four-pi", "4 pi holds only for the uniform density; pdf may be any density"},
                        of([](double l, double) { return l * 4.0 * kPi; })}}}) &&
         c.mean("an environment's coefficients",
-               {.probe = 6, .inputs = with(probe), .expected = glm::dot(truth, probe)});
+               {.probe = 6, .inputs = with(probe), .expected = glm::dot(reference, probe)});
     Curve curve{"Error of a coefficient against samples", "samples", "standard deviation", {}, {}};
     for (int samples = 1; samples <= 256; samples *= 4) {
       auto inputs = with(probe);
       inputs.push_back(glm::vec4(static_cast<float>(samples)));
       double square = 0.0;
       for (const glm::vec4& v : c.run(11, inputs, 0, 512))
-        square += std::pow(v.x - glm::dot(truth, probe), 2.0) / 512.0;
+        square += std::pow(v.x - glm::dot(reference, probe), 2.0) / 512.0;
       curve.mine.emplace_back(samples, std::sqrt(square));
       curve.reference.emplace_back(samples, curve.mine.front().y / std::sqrt(samples));
     }
@@ -133,7 +133,7 @@ void check(Checks& c) {
                 [](Random& r, std::span<glm::vec4> p) {
                   p[0] = inFloat(some(r)), p[1] = inFloat(glm::dvec4(r.direction(), 0.0));
                 },
-            .truth = of(kLobe0, kLobe1),
+            .reference = of(kLobe0, kLobe1),
             .mistakes = {{{"lobe-lost",
                            "that is the radiance from n: irradiance is the product's integral, the dot product with "
                            "the cosine's coefficients"},
@@ -170,7 +170,7 @@ void check(Checks& c) {
                 [](Random& r, std::span<glm::vec4> p) {
                   p[0] = inFloat(some(r)), p[1] = glm::vec4(static_cast<float>(r.uniform(-3, 3)), 0, 0, 0);
                 },
-            .truth = of(1.0, 2),
+            .reference = of(1.0, 2),
             .mistakes = {
                 {{"wrong-sense", "the rotation has the wrong sense: it should go from x towards y"}, of(-1.0, 2)},
                 {{"wrong-axis", "band 1 is a vector (x, y, z) behind band 0: z is the last component"}, of(1.0, 0)},

@@ -90,7 +90,7 @@ void check(Checks& c) {
         {.probe = 1,
          .draw = [](Random& r,
                     std::span<glm::vec4> p) { p[0] = four(r.uniform(-1, 1), r.uniform(-1, 1), r.uniform(0.01, 4.0)); },
-         .truth = of([](double q) { return 1.0 / (kPi * q * q); }),
+         .reference = of([](double q) { return 1.0 / (kPi * q * q); }),
          .mistakes = {{{"published-map", "that is the published map, 1 / r^2: two cosines over r^2 make 1 / r^4"},
                        of([](double q) { return 1.0 / q; })},
                       {{"published-map", "that is the published map, 1 / r^2: two cosines over r^2 make 1 / r^4"},
@@ -116,7 +116,7 @@ void check(Checks& c) {
         {.probe = 2,
          .draw = [](Random& r,
                     std::span<glm::vec4> p) { p[0] = four(r.uniform(-1, 1), r.uniform(0, 1), r.uniform(0.01, 4.0)); },
-         .truth = of([](double z, double q) { return z / (kPi * q * q); }),
+         .reference = of([](double z, double q) { return z / (kPi * q * q); }),
          .mistakes = {{{"published-map",
                         "that is the published map, z / r^2: the cosine at the side's pixel is missing, and one r^2"},
                        of([](double z, double q) { return z / q; })},
@@ -150,7 +150,7 @@ void check(Checks& c) {
                   const double n = 4.0 * std::floor(r.uniform(2, 40)), face = std::floor(r.uniform(0, 5));
                   p[0] = four(face, std::floor(r.uniform(0, n)), std::floor(r.uniform(0, face > 0.5 ? n / 2.0 : n)), n);
                 },
-            .truth = of(0.5, false, true),
+            .reference = of(0.5, false, true),
             .mistakes = {
                 {{"pixel-centre-missed", "that is a pixel's corner: its centre is half a pixel further"},
                  of(0.0, false, true)},
@@ -196,7 +196,7 @@ void check(Checks& c) {
         {.probe = 6,
          .stride = 6,
          .draw = draw,
-         .truth = of(swept),
+         .reference = of(swept),
          .mistakes =
              {{{"transposed", "rows and columns are swapped: gathering takes F from i to j, F[3 i + j]"},
                of([](Point p, glm::dvec3 b) {
@@ -234,14 +234,14 @@ void check(Checks& c) {
         c.twin("two hundred sweeps: the solution", {.probe = 7,
                                                     .stride = 6,
                                                     .draw = draw,
-                                                    .truth = [](Point p) { return glm::dvec4(solved(p), 0.0); },
+                                                    .reference = [](Point p) { return glm::dvec4(solved(p), 0.0); },
                                                     .points = 256});
     // One enclosure derived from the seed: error against sweeps.
     std::vector<glm::vec4> box(7);
     int drawn = 0;
     enclosure([&] { return c.parameter("enclosure " + std::to_string(++drawn), 0.0, 1.0); }, reflectance,
               std::span(box).first(5));
-    const glm::dvec3 truth = solved(box);
+    const glm::dvec3 reference = solved(box);
     Curve curve{
         "Error against sweeps; dashed: the largest radiosity times reflectance to the power of the sweep; at "
         "1e-7 single precision ends",
@@ -251,9 +251,10 @@ void check(Checks& c) {
         {}};
     for (int sweeps = 1; sweeps <= 64; sweeps *= 2) {
       box[6] = four(sweeps);
-      const glm::dvec3 off = glm::abs(glm::dvec3(c.run(11, box, 0, 1)[0]) - truth);
+      const glm::dvec3 off = glm::abs(glm::dvec3(c.run(11, box, 0, 1)[0]) - reference);
       curve.mine.emplace_back(sweeps, std::max({off.x, off.y, off.z}));
-      curve.reference.emplace_back(sweeps, std::max({truth.x, truth.y, truth.z}) * std::pow(reflectance, sweeps));
+      curve.reference.emplace_back(sweeps,
+                                   std::max({reference.x, reference.y, reference.z}) * std::pow(reflectance, sweeps));
     }
     c.curve(curve);
   }
@@ -265,7 +266,7 @@ void check(Checks& c) {
     c.twin("bound at points",
            {.probe = 8,
             .draw = [](Random& r, std::span<glm::vec4> p) { p[0] = four(r.uniform(0.0, 0.1), r.uniform(0.1, 0.97)); },
-            .truth = of([](double d, double r) { return d * r / (1.0 - r); }),
+            .reference = of([](double d, double r) { return d * r / (1.0 - r); }),
             .mistakes = {{{"change-is-no-error", "the last change is not the error: the changes to come add up"},
                           of([](double d, double) { return d; })},
                          {{"one-sweep-late",
@@ -275,16 +276,16 @@ void check(Checks& c) {
                           of([](double d, double r) { return d * r; })},
                          {{"inverted", "the bound grows with the reflectance"},
                           of([](double d, double r) { return d * (1.0 - r) / r; })}}}) &&
-        c.twin("the truth lies within your bound", {.probe = 9,
-                                                    .stride = 6,
-                                                    .draw =
-                                                        [](Random& r, std::span<glm::vec4> p) {
-                                                          enclosure([&] { return r.uniform(); }, r.uniform(0.3, 0.95),
-                                                                    p);
-                                                          p[5] = four(solved(p));
-                                                        },
-                                                    .truth = [](Point) { return glm::dvec4(1.0); },
-                                                    .points = 256});
+        c.twin("the reference lies within your bound", {.probe = 9,
+                                                        .stride = 6,
+                                                        .draw =
+                                                            [](Random& r, std::span<glm::vec4> p) {
+                                                              enclosure([&] { return r.uniform(); },
+                                                                        r.uniform(0.3, 0.95), p);
+                                                              p[5] = four(solved(p));
+                                                            },
+                                                        .reference = [](Point) { return glm::dvec4(1.0); },
+                                                        .points = 256});
   }
   // Numbers that the README quotes.
   c.figure("form factor", factor);

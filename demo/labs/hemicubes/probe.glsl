@@ -55,7 +55,7 @@ vec4 probe() {
 #elif PROBE == 8
   return vec4(errorBound(point(0).x, point(0).y));
 #elif PROBE == 9
-  // Sweep until the bound is small; then 1 if the truth, point(5), is within it.
+  // Sweep until the bound is small; then 1 if the reference, point(5), is within it.
   vec3 radiosity = point(0).xyz;
   float bound = 1e30, most = max(point(1).x, max(point(1).y, point(1).z));
   for (int k = 0; k < 1000 && !(bound < 1e-3); ++k) {

@@ -60,7 +60,7 @@ void check(Checks& c) {
     c.twin("phase function at points",
            {.probe = 1,
             .draw = [](Random& r, std::span<glm::vec4> p) { p[0] = four(r.uniform(-1, 1), r.uniform(-0.9, 0.9)); },
-            .truth = of(phase),
+            .reference = of(phase),
             .mistakes = {{{"g-negated", "g has the wrong sign: positive g scatters forward"},
                           of([](double x, double h) { return phase(x, -h); })},
                          {{"two-pi", "2 pi for 4 pi: the phase function integrates to 1 over the whole sphere"},
@@ -147,7 +147,7 @@ void check(Checks& c) {
                     [](Random& r, std::span<glm::vec4> p) {
                       p[0] = four(r.uniform(0.1, 3), r.uniform(0.1, 3), r.uniform(0.05, 0.95));
                     },
-                .truth = of([](double u, double s, double a) { return -std::log1p(-u) / (s + a); }),
+                .reference = of([](double u, double s, double a) { return -std::log1p(-u) / (s + a); }),
                 .mistakes = {{{"other-inversion",
                                "log(u) has the right distribution but runs out of [0,1) at u = 0: -log(1 - u)"},
                               of([](double u, double s, double a) { return -std::log(u) / (s + a); })}}});
@@ -208,7 +208,7 @@ void check(Checks& c) {
     c.twin("coefficient at points",
            {.probe = 8,
             .draw = [](Random& r, std::span<glm::vec4> p) { p[0] = four(r.uniform(0.01, 10), r.uniform(5, 2000)); },
-            .truth = of([](double t, double ml) { return t * 230.0 / ml; }),
+            .reference = of([](double t, double ml) { return t * 230.0 / ml; }),
             .mistakes = {
                 {{"unit", "the tables are in 1e-2 / mm"}, of([](double t, double ml) { return t * 23000.0 / ml; })},
                 {{"diluted", "that is the diluted liquid: divide by its share of the tank"},

@@ -42,7 +42,7 @@ void check(Checks& c) {
                   p[0] = four(r.uniform(0.0, 3.0), r.uniform(0.0, 3.0));
                   if (r.uniform() < 0.05) p[0] = four(0.0, 0.0);
                 },
-            .truth = of([](double a, double b) { return a > 0.0 ? a / (a + b) : 0.0; }),
+            .reference = of([](double a, double b) { return a > 0.0 ? a / (a + b) : 0.0; }),
             .mistakes = {{{"double-counting", "both strategies have full weight: light is counted twice"},
                           of([](double, double) { return 1.0; })},
                          {{"double-counting", "both strategies have full weight: light is counted twice"},
@@ -76,7 +76,7 @@ void check(Checks& c) {
                   p[2] = four(r.direction()),
                   p[3] = four(r.uniform(0.1, 5.0), r.uniform(0.05, 1.0), r.uniform(0.1, 3.0));
                 },
-            .truth = of(LIGHT { return l * a / kPi * cx * std::max(0.0, cy) / (d * d) / pdf; }),
+            .reference = of(LIGHT { return l * a / kPi * cx * std::max(0.0, cy) / (d * d) / pdf; }),
             .mistakes = {{{"lost-pi", "1 / pi of Lambert's BRDF is missing"},
                           of(LIGHT { return l * a * cx * std::max(0.0, cy) / (d * d) / pdf; })},
                          {{"no-area-to-solid-angle",
@@ -112,7 +112,7 @@ void check(Checks& c) {
                   do p[0] = four(r.uniform(0.1, 2.0), r.uniform(0.05, 0.95), r.uniform());
                   while (std::abs(p[0].y - p[0].z) < 1e-3f);
                 },
-            .truth = of(false, [](double t, double s) { return t / s; }),
+            .reference = of(false, [](double t, double s) { return t / s; }),
             .mistakes = {{{"roulette-undivided",
                            "survivors are not divided by the probability of survival: the picture darkens"},
                           of(false, [](double t, double) { return t; })},
@@ -133,7 +133,7 @@ void check(Checks& c) {
   if (c.task(4)) {
     const double otherAlbedo = c.fresh(0.3, 0.8), otherEmission = c.fresh(0.5, 2.0);
     const std::vector<glm::vec4> box{four(emission, albedo, survival)};
-    const double truth = emission / (1.0 - albedo);
+    const double reference = emission / (1.0 - albedo);
     std::vector<double> shares, endingExchanged;
     for (int k = 0; k < 16; ++k)
       shares.push_back(std::pow(survival, k) * (k < 15 ? 1.0 - survival : 1.0)),
@@ -145,14 +145,15 @@ void check(Checks& c) {
         "radiance in a closed box",
         {.probe = 9,
          .inputs = box,
-         .expected = truth,
-         .mistakes =
-             {{{"lost-emission", "the walls' own emission, seen without a reflection, is missing"}, truth - emission},
-              {{"roulette-undivided", "the throughput that roulette returns is not used: survivors count too little"},
-               emission / (1.0 - albedo * survival)},
-              {{"one-bounce", "there is more than one reflection: the path continues until roulette ends it"},
-               emission * (1.0 + albedo)},
-              {{"emission-once", "every wall that the path meets emits: add it at each"}, emission}}}) &&
+         .expected = reference,
+         .mistakes = {{{"lost-emission", "the walls' own emission, seen without a reflection, is missing"},
+                       reference - emission},
+                      {{"roulette-undivided",
+                        "the throughput that roulette returns is not used: survivors count too little"},
+                       emission / (1.0 - albedo * survival)},
+                      {{"one-bounce", "there is more than one reflection: the path continues until roulette ends it"},
+                       emission * (1.0 + albedo)},
+                      {{"emission-once", "every wall that the path meets emits: add it at each"}, emission}}}) &&
         c.mean("radiance in another closed box",
                {.probe = 9,
                 .inputs = {four(otherEmission, otherAlbedo, 0.85)},
@@ -189,7 +190,7 @@ void check(Checks& c) {
                                deviation = r.uniform(0.5, 2.0) * mean;
                   p[0] = four(n * mean, n * (mean * mean + deviation * deviation), n);
                 },
-            .truth = of([](double m, double q, double n) { return std::sqrt((q - m * m) / (n - 1.0)); }),
+            .reference = of([](double m, double q, double n) { return std::sqrt((q - m * m) / (n - 1.0)); }),
             .mistakes = {
                 {{"deviation-of-a-sample", "that is the deviation of one sample; the mean of n has 1 / sqrt(n) of it"},
                  of([](double m, double q, double n) { return std::sqrt((q - m * m) * n / (n - 1.0)); })},

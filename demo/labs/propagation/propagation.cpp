@@ -110,7 +110,7 @@ void check(Checks& c) {
                for (int k = 0; k < 3; ++k) q[k] = std::floor(r.uniform(-4, 12)) + r.uniform(0.02, 0.98);
                p[1] = four(n), p[2] = four(least, s), p[0] = four(glm::dvec3(p[2]) + (q - 0.5 * n) * double(p[2].w));
              },
-         .truth = of(0.5, down),
+         .reference = of(0.5, down),
          .mistakes = {
              {{"no-half-cell", "the light is not moved half a cell along its normal: it would light its own surface"},
               of(0.0, down)},
@@ -133,7 +133,7 @@ void check(Checks& c) {
     c.twin("injected light",
            {.probe = 2,
             .draw = [](Random& r, std::span<glm::vec4> p) { p[0] = four(r.direction(), r.uniform(0.1, 5)); },
-            .truth = of(kLobe0 / kPi, kLobe1 / kPi),
+            .reference = of(kLobe0 / kPi, kLobe1 / kPi),
             .mistakes = {
                 {{"lost-pi", "1 / pi is missing: the intensity is flux / pi * cos, so that it integrates to the flux"},
                  of(kLobe0, kLobe1)},
@@ -160,7 +160,7 @@ void check(Checks& c) {
                 [](Random& r, std::span<glm::vec4> p) {
                   p[0] = glm::vec4(some(r)), p[1] = four(r.direction(), r.uniform(0.1, 1.0));
                 },
-            .truth = of(1.0, true, true),
+            .reference = of(1.0, true, true),
             .mistakes = {{{"no-clamp", "an intensity within two bands may be negative; a flux may not"},
                           of(1.0, false, true)},
                          {{"lost-solid-angle", "the solid angle is missing"}, of(1.0, true, false)},
@@ -199,7 +199,7 @@ void check(Checks& c) {
                p[0] = glm::vec4(some(r)), p[1] = four(kAxes[k]), p[2] = four(kAxes[(k + 2) % 6]),
                p[3] = four(kAxes[(k + 4) % 6]);
              },
-         .truth = of({}),
+         .reference = of({}),
          .mistakes =
              {{{"side-solid-angle",
                 "0.42344 for 0.42343 sr: the wrong constant that several programs copied from each other"},
@@ -225,7 +225,7 @@ void check(Checks& c) {
                     [](Random& r, std::span<glm::vec4> p) {
                       p[0] = glm::vec4(joined(r.uniform(0.8, 1.0), 0.25 * r.direction()));
                     },
-                .truth = [kept](Point p) { return glm::dvec4(1.0, kept, kept, kept) * glm::dvec4(p[0]); },
+                .reference = [kept](Point p) { return glm::dvec4(1.0, kept, kept, kept) * glm::dvec4(p[0]); },
                 .tolerance = 1e-5});
     // The grid loses direction: band 1 of uniform light, step by step.
     Curve curve{"What is left of band 1 after steps", "steps", "share", {}, {}};
@@ -253,7 +253,7 @@ void check(Checks& c) {
                   p[0] = glm::vec4(joined(r.uniform(0.8, 1.5), 0.3 * r.direction())),
                   p[1] = four(r.direction(), r.uniform(0.3, 2.0));
                 },
-            .truth = of({}, 1.0, true),
+            .reference = of({}, 1.0, true),
             .mistakes = {{{"wrong-side", "light that arrives travels against the normal: -n"}, of({}, -1.0, true)},
                          {{"area-lost", "flux over area: divide by cell * cell"}, of({}, 1.0, false)},
                          {{"front-alone", "the four sides are missing"}, of({.sides = false}, 1.0, true)},

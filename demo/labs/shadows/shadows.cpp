@@ -52,7 +52,7 @@ void check(Checks& c) {
                        x = glm::dot(glm::dvec3(p[0]), glm::dvec3(p[1])))
                     p[0] = four(r.direction(), r.uniform(0.01, 0.2)), p[1] = four(r.direction());
                 },
-            .truth = of([](double x, double t) { return 0.5 * t * std::sqrt(1.0 - x * x) / x; }),
+            .reference = of([](double x, double t) { return 0.5 * t * std::sqrt(1.0 - x * x) / x; }),
             .mistakes = {
                 {{"sine-for-tangent", "depth changes with the tangent of the angle, not with its sine"},
                  of([](double x, double t) { return 0.5 * t * std::sqrt(1.0 - x * x); })},
@@ -102,7 +102,7 @@ void check(Checks& c) {
                         near = near || std::abs(p[0][k] - p[1].x + b * p[1].y) < 1e-4f;
                   }
                 },
-            .truth = of(1.0, false, false),
+            .reference = of(1.0, false, false),
             .mistakes = {
                 {{"filter-then-compare", "depths must not be averaged: compare first, then filter [Reeves1987]"},
                  [=](Point p) {
@@ -133,7 +133,7 @@ void check(Checks& c) {
                 [](Random& r, std::span<glm::vec4> p) {
                   p[0] = four(r.uniform(0.1, 1), r.uniform(0.1, 5), r.uniform(0.001, 0.1), r.uniform(0.1, 1));
                 },
-            .truth = of([](double a, double e, double t, double) { return a * e * t; }),
+            .reference = of([](double a, double e, double t, double) { return a * e * t; }),
             .mistakes = {
                 {{"double-cosine",
                   "the cosine is in the texel's area already: the surface is larger by 1 / cos and lit less by cos"},
@@ -165,7 +165,7 @@ void check(Checks& c) {
                   p[0] = four(r.direction() * r.uniform(1.0, 3.0), r.uniform(0.1, 2)), p[1] = four(r.direction()),
                   p[2] = four(r.direction() * 0.4), p[3] = four(r.direction());
                 },
-            .truth = of(PART { return std::max(0.0, cp) * std::max(0.0, cx) / (kPi * d * d); }),
+            .reference = of(PART { return std::max(0.0, cp) * std::max(0.0, cx) / (kPi * d * d); }),
             .mistakes = {{{"lost-pi", "1 / pi is missing: the intensity is flux / pi * cos"},
                           of(PART { return std::max(0.0, cp) * std::max(0.0, cx) / (d * d); })},
                          {{"power-of-distance",
@@ -201,7 +201,7 @@ void check(Checks& c) {
     c.twin("samples of the disc",
            {.probe = 5,
             .draw = [](Random& r, std::span<glm::vec4> p) { p[0] = four(r.uniform(), r.uniform(), r.uniform(0.1, 2)); },
-            .truth = of([](double xi, double r) { return 2.0 * kPi * r * r * xi; }),
+            .reference = of([](double xi, double r) { return 2.0 * kPi * r * r * xi; }),
             .mistakes = {{{"published-weight",
                            "xi^2 is the published weight, which is too small beside the middle: the density of the "
                            "samples falls with 1 / xi alone"},

@@ -18,7 +18,7 @@ static void check(Checks& c) {
     c.twin("areas",
            {.probe = 1,
             .draw = [](Random& r, std::span<glm::vec4> p) { p[0].x = static_cast<float>(r.uniform(0.1, 5.0)); },
-            .truth = [](Point p) { return glm::dvec4(kPi * p[0].x * p[0].x); },
+            .reference = [](Point p) { return glm::dvec4(kPi * p[0].x * p[0].x); },
             .mistakes = {{circumference, [](Point p) { return glm::dvec4(2.0 * kPi * p[0].x); }},
                          {{"not-squared", "square the radius"}, [](Point p) { return glm::dvec4(kPi * p[0].x); }}}});
   // Samples compared with the probabilities of bins: eight rings of equal area; 8 is outside.

@@ -1,4 +1,4 @@
-// The measurements of `lucerna bench error`: each technique over a ladder of settings, and each deviation alone.
+// The measurements of `lucerna bench error`: each technique over a sweep of settings, and each deviation alone.
 #pragma once
 
 #include "shared/commands.hpp"
@@ -10,15 +10,15 @@ namespace lucerna::demo::bench {
 
 /// What a picture is made without, to tell whose error it is: the cells, all of the reflective shadow map gathered at
 /// each pixel; or the propagation, the exact radiance in the cells. The third floor, exact light at the receivers, is a
-/// rung of `rays`.
-enum class Floor { none, map, cells };
+/// point of `rays`.
+enum class Bound { none, map, cells };
 
 /// One measurement: the options of a picture as on the command line, and the series that it belongs to.
-struct Rung {
+struct SweepPoint {
   std::string series;  ///< such as "lpv cells"; a line of the plot
   PictureOptions picture;  ///< technique, fidelity, deviations, settings
   bool isStep = false;  ///< has more of something than the one before it in its series: it should not be worse
-  Floor floor = Floor::none;
+  Bound bound = Bound::none;
   bool byReadPixels = false;  ///< radiosity: solved by the published program, with colours drawn and read back
   std::size_t mostPatches = 0;  ///< then: of a scene with more, a coarser model
   /// Label in tables: settings that differ from the defaults.
@@ -27,16 +27,16 @@ struct Rung {
   std::string name() const;
 };
 
-/// The techniques with a ladder.
-std::vector<std::string> ladderTechniques();
-/// Throws Error(badInput) naming an unknown technique. `shrink`: leave out the most expensive rungs. longestSide: of
+/// The techniques with a sweep.
+std::vector<std::string> sweepTechniques();
+/// Throws Error(badInput) naming an unknown technique. `shrink`: leave out the most expensive points. longestSide: of
 /// the scene, for patch sizes.
-std::vector<Rung> ladderOf(const std::string& technique, bool shrink, double longestSide);
+std::vector<SweepPoint> sweepOf(const std::string& technique, bool shrink, double longestSide);
 /// "TECHNIQUE [SETTING=VALUE]...": a picture that was asked for. Throws Error(badInput) for what it cannot be.
-Rung askedRung(const std::string& text);
-/// The floors of the light propagation volume's transports.
-std::vector<Rung> floorRungs();
+SweepPoint parseSweepPoint(const std::string& text);
+/// The bounds of the light propagation volume's transports.
+std::vector<SweepPoint> boundPoints();
 /// Corrected, and corrected with one deviation on at a time, for every technique that has the deviation.
-std::vector<Rung> deviationRungs(const std::vector<std::string>& techniques);
+std::vector<SweepPoint> deviationPoints(const std::vector<std::string>& techniques);
 
 }  // namespace lucerna::demo::bench

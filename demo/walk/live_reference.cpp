@@ -1,4 +1,4 @@
-#include "walk/truth.hpp"
+#include "walk/live_reference.hpp"
 
 #include "base/clock.hpp"
 #include "base/error.hpp"
@@ -32,8 +32,8 @@ gl::Texture textureOf(const std::string& name, const Image& image) {
 
 // The settings are those of bench/path_sampler.cpp, so that both give the same picture; another seed makes it
 // independent of the cached samples.
-Truth::Truth(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, glm::ivec2 size,
-             Component component)
+LiveReference::LiveReference(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
+                             glm::ivec2 size, Component component)
     : context_(context),
       scene_(scene),
       size_(size),
@@ -54,9 +54,9 @@ Truth::Truth(const gl::Context& context, gl::ProgramLibrary& programs, const Sce
   errorTexture_ = gl::Texture("standard error of the reference", gl::Format::rgba32f, size);
 }
 
-Truth::~Truth() = default;
+LiveReference::~LiveReference() = default;
 
-void Truth::look(const Camera& camera) {
+void LiveReference::look(const Camera& camera) {
   keep();
   tracer_->setCamera(camera);
   key_ = measure::keyOf(scene_, camera, size_, transportOf(component_), bench::PathSampler::kVersion);
@@ -69,7 +69,7 @@ void Truth::look(const Camera& camera) {
   if (cached_) publish();
 }
 
-void Truth::advance(double seconds) {
+void LiveReference::advance(double seconds) {
   if (!key_) return;
   const auto begin = Clock::now();
   do {
@@ -85,7 +85,7 @@ void Truth::advance(double seconds) {
 }
 
 // Publishes only whole passes: every pixel has the same number of samples.
-void Truth::publish() {
+void LiveReference::publish() {
   measure::Reference mine;
   if (shownSamples_ >= 2) {
     mine.transport = transportOf(component_);
@@ -106,7 +106,7 @@ void Truth::publish() {
   ++version_;
 }
 
-void Truth::keep() {
+void LiveReference::keep() {
   if (!key_ || shownSamples_ < keptSamples_ + kWorthKeeping || shown_.samples == 0) return;
   try {
     cache_.store(*key_, shown_);
@@ -114,7 +114,9 @@ void Truth::keep() {
   keptSamples_ = shownSamples_;
 }
 
-std::size_t Truth::gpuBytes() const { return tracer_->gpuBytes() + meanTexture_.bytes() + errorTexture_.bytes(); }
+std::size_t LiveReference::gpuBytes() const {
+  return tracer_->gpuBytes() + meanTexture_.bytes() + errorTexture_.bytes();
+}
 
 Judgement::~Judgement() {
   if (pending_.valid()) pending_.wait();
@@ -133,9 +135,9 @@ void Judgement::judge(Image picture, const measure::Reference& reference, bool w
   bias_ = mean > 0.0 ? (a.x + a.y + a.z) / mean - 1.0 : 0.0;
   known_ = true;
   if (!withFlip || pending_.valid()) return;  // the next one will have better pictures
-  pending_ = std::async(std::launch::async, [picture = std::move(picture), truth = reference.mean] {
-    const measure::Flip flip = measure::flipHdr(picture, truth);
-    return FlipResult{flip.mean, flip.map, truth.width, truth.height};
+  pending_ = std::async(std::launch::async, [picture = std::move(picture), exact = reference.mean] {
+    const measure::Flip flip = measure::flipHdr(picture, exact);
+    return FlipResult{flip.mean, flip.map, exact.width, exact.height};
   });
 }
 

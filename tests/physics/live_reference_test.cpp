@@ -1,7 +1,7 @@
-// The window's live truth (demo/walk/truth.hpp): the interval that it states for a picture's error holds the true error
-// in at least 95 of 100 views. The truth here is a reference with many times the samples and other random numbers.
-// Its own noise can only make it leave the interval more often.
-// LUCERNA_LONG_TESTS=1: 201 views of three scenes, some five minutes of one core.
+// The window's live reference (demo/walk/live_reference.hpp): the interval that it states for a picture's error holds
+// the true error in at least 95 of 100 views. The reference here is a reference with many times the samples and other
+// random numbers. Its own noise can only make it leave the interval more often. LUCERNA_LONG_TESTS=1: 201 views of
+// three scenes, some five minutes of one core.
 #include "measure/error_interval.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "render/renderer.hpp"
@@ -16,9 +16,9 @@
 namespace lucerna::test {
 namespace {
 
-class LiveTruth : public SharedProgramsTest {
+class LiveReference : public SharedProgramsTest {
  protected:
-  /// As demo/walk/truth.cpp samples; another seed is independent.
+  /// As demo/walk/reference.cpp samples; another seed is independent.
   PathTracer sampler(const Scene& scene, std::uint32_t seed) const {
     PathTracer::Settings settings;
     settings.size = kSize;
@@ -36,10 +36,10 @@ class LiveTruth : public SharedProgramsTest {
   static constexpr glm::ivec2 kSize{24, 14};
 
   /// `views` along the scene's path, techniques in turn.
-  Tally judge(const std::string& file, int views, std::uint32_t samplesOfTruth) const {
+  Tally judge(const std::string& file, int views, std::uint32_t samplesOfReference) const {
     const Scene scene = loadScene(std::string(LUCERNA_SOURCE_DIR "/assets/") + file);
     const Spline path(readKeyFrames(scene.keyFrames));
-    PathTracer live = sampler(scene, 1), truth = sampler(scene, 2);
+    PathTracer live = sampler(scene, 1), reference = sampler(scene, 2);
     Tally tally;
     constexpr std::array<std::string_view, 3> kTechniques{"direct", "rsm", "lpv"};
     for (std::size_t turn = 0; turn < kTechniques.size(); ++turn) {
@@ -52,9 +52,9 @@ class LiveTruth : public SharedProgramsTest {
         const Camera camera = path.view(i * (path.viewCount() - 1) / std::max(views - 1, 1));
         renderer.renderToTheEnd(camera);
         const Image picture = renderer.readRadiance();
-        truth.setCamera(camera);
-        truth.record(samplesOfTruth);
-        const double error = measure::nrmseInterval(picture, truth.mean(), truth.standardError()).value;
+        reference.setCamera(camera);
+        reference.record(samplesOfReference);
+        const double error = measure::nrmseInterval(picture, reference.mean(), reference.standardError()).value;
         live.setCamera(camera);
         live.setFirstSample(static_cast<std::uint32_t>(i) * kSamples.back());  // other numbers in each view
         for (std::size_t k = 0; k < kSamples.size(); ++k) {
@@ -74,7 +74,7 @@ class LiveTruth : public SharedProgramsTest {
   }
 };
 
-TEST_F(LiveTruth, TheStatedIntervalHoldsTheTrueError) {
+TEST_F(LiveReference, TheStatedIntervalHoldsTheTrueError) {
   const bool all = longTests();
   int views = 0;
   std::array<int, 2> held{};

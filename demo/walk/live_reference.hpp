@@ -1,4 +1,4 @@
-// Live truth: while the camera rests, the path tracer computes the reference for the current view, and pictures are
+// Live reference: while the camera rests, the path tracer computes the reference for the current view, and pictures are
 // judged against it.
 //
 // In: the scene, the view, the size and the kind of light; each frame, the time budget. Out: mean and standard error as
@@ -19,12 +19,12 @@
 
 namespace lucerna::demo {
 
-class Truth {
+class LiveReference {
  public:
   /// Compiles, and builds the scene's hierarchy; `scene` must outlive it.
-  Truth(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, glm::ivec2 size,
-        Component component);
-  ~Truth();
+  LiveReference(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, glm::ivec2 size,
+                Component component);
+  ~LiveReference();
 
   glm::ivec2 size() const { return size_; }
   Component component() const { return component_; }
