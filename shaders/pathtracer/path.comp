@@ -34,7 +34,10 @@ uint collisionCount = 0u;  // of this lane, in this submission
 #endif
 #include "pathtracer/shadow_ray.glsl"
 #if INTERIORS
-#include "pathtracer/volume.glsl"
+#include "pathtracer/crossing.glsl"
+#endif
+#if MEDIA
+#include "pathtracer/flight.glsl"
 #endif
 #include "pathtracer/facet.glsl"
 
