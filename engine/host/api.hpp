@@ -1,6 +1,4 @@
-// The only includer of glew.h: OpenGL 4.3 core plus probed extensions, nothing newer.
+// The only includer of glew.h: OpenGL 4.3 core plus probed extensions, nothing newer (tests/unit/layers_test.cpp).
 #pragma once
 
 #include <GL/glew.h>
-
-#include "host/newer_than_43.hpp"

@@ -8,7 +8,7 @@
 
 namespace lucerna {
 
-/// Any model that Assimp reads, with defaults for what the file leaves out. See scene_loader.cpp.
+/// Any model that Assimp reads, with defaults for what the file leaves out (scene_defaults.cpp).
 Scene loadModel(const std::filesystem::path& file);
 
 /// The scene JSON: a model with cameras, lights and settings. Its keys: scene_file.cpp.
@@ -22,6 +22,12 @@ void checkObj(const std::filesystem::path& file, std::string_view text);
 /// ignores such a number and shifts those behind it), and without leading blanks (it skips such a line).
 std::string repairedObj(std::string_view obj);
 
+/// Without a light: the default sun.
+void setDefaultSun(Scene& scene);
+
+/// The camera path of the repository, and the view from outside if no camera sees anything.
+void setDefaultView(Scene& scene);
+
 /// With the default sun, after a view has been chosen: the sun no longer follows the view from outside.
 void useChosenView(Scene& scene);
 
@@ -31,6 +37,10 @@ void setDefaultExposure(Scene& scene, const Camera& camera);
 
 /// With the default sun: the clear sky for its current direction.
 void setDefaultSky(Scene& scene);
+
+/// Model files specify lamps in arbitrary units. If their light in the middle of the scene is far from what an exposure
+/// of 1 shows, choose another exposure.
+void setExposureForLamps(Scene& scene);
 
 /// Sets `file` as the scene's camera path and, if there is no camera yet, its first key as the first camera.
 void setKeyFrames(Scene& scene, const std::filesystem::path& file);

@@ -34,7 +34,10 @@ uint collisionCount = 0u;  // of this lane, in this submission
 #endif
 #include "pathtracer/shadow_ray.glsl"
 #if INTERIORS
-#include "pathtracer/volume.glsl"
+#include "pathtracer/crossing.glsl"
+#endif
+#if MEDIA
+#include "pathtracer/flight.glsl"
 #endif
 #include "pathtracer/facet.glsl"
 
@@ -284,20 +287,281 @@ void addSample(inout Film film, vec3 radiance, uint samples) {
 ivec2 pixelAt(uint where) { return ivec2(where & 0xffffu, where >> 16u); }
 uint indexOf(ivec2 pixel) { return uint(pixel.y * tracer.picture.x + pixel.x); }
 
-// A lane's job: which kind of ray it traces.
+// What a lane does. Its job is the kind of ray that it traces, its stage what it does next. Within an iteration of the
+// loop in main() each stage follows from those above it:
+//   stage     of the lane                          does                                        next
+//   kTraces   begins an iteration                  traces its job's ray                        kLit, kFlies, kMeets
+//   kLit      shadow ray traced to its end         adds its light                              `after`
+//   kFlies    path's ray traced                    samples lamps along it, if in a medium      kFlown, else kArrives
+//   kFlown    lamps along it sampled               flies: may collide and scatter              kArrives, kGoesOn, kEnds
+//   kArrives  at a surface, or far away            looks for other boundaries beside it        kMeets
+//   kMeets    all boundaries there known           gathers light and scatters                  kGoesOn, kEnds
+//   kEnds     path ended                           completes the sample, starts the next path  kTraces
+//   kGoesOn   path has its next ray                                                            kTraces
+// Queued shadow rays, and the short rays beside a boundary, come before the next stage: kTraces, with their job.
 const uint kPathRay = 0u;
 const uint kShadowRay = 1u;
 const uint kBesidesRay = 2u;  // the short ray across a boundary
+uint job = kPathRay;
 
-// Its stages: what to do next.
-const int kTraces = 0;
-const int kLit = 1;      // a shadow ray has been traced to its end
-const int kFlies = 2;    // the path's ray was traced
-const int kFlown = 3;    // and lamps along it were sampled
-const int kArrives = 4;  // at a surface, or far away
-const int kMeets = 5;    // all boundaries there are known
-const int kEnds = 6;
-const int kGoesOn = 7;   // with the next ray
+const int kTraces = 0, kLit = 1, kFlies = 2, kFlown = 3, kArrives = 4, kMeets = 5, kEnds = 6, kGoesOn = 7;
+int stage = kTraces;
+int after = kGoesOn;  // the stage to resume after a shadow ray has been traced to its end
+
+Hit arrival;          // the hit of the path's ray
+#if MEDIA
+float flight = 3e38;  // length of the path's current flight
+#endif
+#if TOUCHING
+Hit crossed;          // the boundary that a shadow ray is crossing
+bool right = true;    // whether the path could validly cross the boundary
+#endif
+
+// If a shadow ray waits, it is traced before the lane's stage.
+void traceShadowFirst() {
+  if (!shadow.waits) return;
+  job = kShadowRay;
+  after = stage;
+  stage = kTraces;
+}
+
+// kTraces: the ray of the lane's job, and the triangle that it starts on. False: the submission's budget is used up.
+bool setUpRay(inout Path path, PathNumbers numbers, out Ray ray, out uint skip) {
+  ray = Ray(vec3(0.0), 0.0, vec3(1.0), 0.0);
+  skip = kNoHit;
+  if (job == kPathRay) {
+    if (loopIterations >= tracer.iterations) return false;
+    loopIterations += 4u;
+    take(path);
+    ray = Ray(path.origin, 0.0, path.direction, 3e38);
+    skip = path.skip;
+#if ASKED
+    notePlace(path);
+#endif
+#if MEDIA
+    // In a homogeneous medium the flight length is drawn first: short rays are cheap to trace.
+    int medium = mediumInside(path.inside);
+    flight = medium >= 0 ? beginFlight(path, mediumOf(medium), numbers) : 3e38;
+#if WALKS
+    if (medium >= 0) {
+      if (!walk(path, mediumOf(medium), flight, numbers)) stage = kEnds;
+      park(path);
+    }
+    skip = path.skip;
+#endif
+    ray = Ray(path.origin, 0.0, path.direction, flight + flightMargin());
+#endif
+  }
+#if !SHADOW_AT_ONCE
+  if (job == kShadowRay) {
+    takeShadow();
+#if INTERIORS
+    ray = Ray(shadow.origin, shadow.tMin, shadow.direction, shadow.infinite ? 3e38 : 1.0);
+#else
+    ray = Ray(shadow.origin, 0.0, shadow.direction, shadow.infinite ? 3e38 : 1.0);
+#endif
+    skip = shadow.skip;
+  }
+#endif
+#if TOUCHING
+  if (job == kBesidesRay) {
+    takeBesides();
+    Surface surface;
+    if (shadow.waits) {
+      takeShadow();
+      takeHit(1u, crossed);
+      surface = surfaceAt(crossed.triangle, crossed.barycentrics, shadow.direction);
+    } else {
+      take(path);
+      takeHit(0u, arrival);
+      surface = surfaceAt(arrival.triangle, arrival.barycentrics, path.direction);
+    }
+    besides.gap = gapAt(surface);
+    ray = besidesRay(besides, surface.position, -besides.gap * surface.geometricNormal);
+    parkBesides();
+    skip = besides.skip;
+  }
+#endif
+  return true;
+}
+
+// The hit goes to the lane's job: the path's arrival, a step across a boundary, or a shadow ray's hit. Then kLit.
+void useHit(inout Path path, Ray ray, Hit hit, PathNumbers numbers) {
+  // A path's arrival. Without interiors nothing else needs it, so it is not kept.
+  bool arrives = job == kPathRay && stage == kTraces;
+  if (INTERIORS == 0 || arrives) arrival = hit;
+  if (arrives) {
+    parkHit(0u, hit);
+    stage = kFlies;
+  }
+#if TOUCHING
+  // A short ray: to the next boundary, or back to the ray that crosses them.
+  if (job == kBesidesRay) {
+    takeBesides();
+    vec3 ahead = 0.5 * ray.direction;
+    bool goesOn = crossBesides(besides, hit, ahead);
+    if (!goesOn && shadow.waits) {
+      takeShadow();
+      shadow.inside = besides.beyond;
+      if (hit.triangle != kNoHit) shadow.light = vec3(0.0);
+      shadow.tMin +=
+          dot(ahead, ahead) / max(dot(ahead, shadow.direction), 0.01 * besides.gap * length(shadow.direction));
+      job = kShadowRay;
+      if (!shadowGoesOn()) stage = kLit;
+      parkShadow();
+    } else if (!goesOn) {
+      job = kPathRay;
+      stage = kMeets;
+      if (hit.triangle != kNoHit) {  // a surface immediately behind: the path has hit it from its current position
+        take(path);
+        takeHit(0u, arrival);
+        besides.beyond = besides.before = path.inside;
+        arrival.triangle = hit.triangle;
+        arrival.barycentrics = hit.barycentrics;
+        parkHit(0u, arrival);
+      } else if (!right) {
+        atomicAdd(wrongCrossings, 1u);
+      }
+    }
+    parkBesides();
+  } else
+#endif
+  // A shadow ray may go on behind what it met.
+  if (job == kShadowRay) {
+    takeShadow();
+#if INTERIORS
+    bool goesOn = crossShadow(hit);
+#if TOUCHING
+    if (goesOn) {
+      job = kBesidesRay;
+      crossed = hit;
+      parkHit(1u, hit);
+      besides = Besides(shadow.inside, shadow.inside, 0.0, hit.triangle, 0u, 0.0);
+      parkBesides();
+    }
+#else
+    goesOn = goesOn && shadowGoesOn();
+#endif
+    if (!goesOn) stage = kLit;
+#else
+    if (hit.triangle != kNoHit) shadow.light = vec3(0.0);
+    stage = kLit;
+#endif
+    parkShadow();
+  }
+  // Add the shadow ray's light; the path resumes where it waited.
+  if (stage == kLit) {
+    takeShadow();
+    addRadiance(path, shadow.light);
+#if ASKED
+    take(path);
+    noteShadow(path, after == kFlown, numbers);
+#endif
+    shadow.waits = false;
+    job = kPathRay;
+    stage = after;
+  }
+}
+
+// kFlies and kFlown: the flight through a medium. Lamps along it are sampled, then it is decided whether it ends before
+// the surface.
+void fly(inout Path path, PathNumbers numbers) {
+#if MEDIA
+  if (stage == kFlies) {
+    take(path);
+    int medium = mediumInside(path.inside);
+    stage = medium < 0 ? kArrives : kFlown;
+#if NEXT_EVENT && (POINTS || SPOTS) && !DISTANCE_WITHOUT_PDF && !BOOSTED_INTERACTION
+    if (medium >= 0 && media[medium].grid < 0 && lampsReach(path)) {
+      takeHit(0u, arrival);
+      addPointLight(path, mediumOf(medium), channelProbabilities(path.throughput), flownDistance(path, arrival, flight),
+                    numbers);
+      traceShadowFirst();
+    }
+#endif
+  }
+  if (stage == kFlown) {
+    take(path);
+    takeHit(0u, arrival);
+    int became = crossMedium(path, mediumInside(path.inside), flight, arrival, numbers);
+    park(path);
+    stage = became == kFlightArrives ? kArrives : became == kScattered ? kGoesOn : kEnds;
+    if (stage != kArrives) traceShadowFirst();
+  }
+#else
+  if (stage == kFlies) stage = kArrives;
+#endif
+}
+
+// kArrives and kMeets: all boundaries at the surface are found, then the hit is handled and lamps are sampled.
+void arrive(inout Path path, PathNumbers numbers) {
+  if (stage == kArrives) {
+    stage = kMeets;
+#if TOUCHING
+    // The other boundaries crossed by the step to the far side: a face that coincides with this one belongs to the same
+    // interface.
+    take(path);
+    takeHit(0u, arrival);
+    besides = Besides(path.inside, path.inside, 0.0, arrival.triangle, 0u, 0.0);
+    int rank = arrival.triangle != kNoHit ? rankOf(arrival.triangle) : -1;
+    if (rank >= 0) {
+      right = crossBoundary(besides.beyond, rank, facesAgainst(arrival.triangle, path.direction));
+      job = kBesidesRay;
+      stage = kTraces;
+    }
+    parkBesides();
+#endif
+  }
+  if (stage == kMeets) {
+    take(path);
+    takeHit(0u, arrival);
+    stage = meet(path, arrival, numbers) ? kGoesOn : kEnds;
+    park(path);
+#if SHADOW_AT_ONCE
+    if (shadow.waits &&
+        !anyHit(Ray(shadow.origin, 0.0, shadow.direction, shadow.infinite ? 3e38 : 1.0), shadow.skip)) {
+      path.radiance += shadow.light;
+#if ASKED
+      noteShadow(path, false, numbers);
+#endif
+    }
+    shadow.waits = false;
+#else
+    traceShadowFirst();
+#endif
+  }
+}
+
+void beginPath(out Path path, ivec2 pixel, PathNumbers numbers) {
+  path = startPath(pixel, numbers);
+  park(path);
+  startRadiance(path);
+}
+
+// kEnds: the sample is complete, and the next path starts. False: the pixel has all its samples.
+bool nextSample(inout Path path, inout Film film, uint where, inout PathNumbers numbers) {
+  uint samples = ++numbers.sampleIndex - uint(tracer.picture.w);
+  ivec2 pixel = pixelAt(where + hiddenZero());
+#if PARKED
+  film = readFilm(pixel);
+#endif
+  addSample(film, radianceOf(path), samples);
+#if PARKED
+  writeFilm(pixel, film, samples);
+#endif
+  if (samples >= tracer.sampleTarget) return false;
+  beginPath(path, pixel, numbers);
+  return true;
+}
+
+// What a GPU would otherwise keep in registers is computed again.
+void forget(inout uint where, inout PathNumbers numbers) {
+#if PARKED
+  forgetAddresses();
+  where += hiddenZero();
+  numbers.pixel = indexOf(pixelAt(where));
+#endif
+}
 
 void main() {
   // The pixel's film, and the path left by the previous dispatch.
@@ -308,106 +572,29 @@ void main() {
   if (samples >= tracer.sampleTarget) return;
 
   // picture.w: index of the film's first sample.
-#if PARKED
+  PathNumbers numbers = PathNumbers(indexOf(pixel), uint(tracer.picture.w) + samples, tracer.seed);
   Film film;
-#else
-  Film film = readFilm(pixel);
+#if !PARKED
+  film = readFilm(pixel);
 #endif
   uint where = uint(pixel.x) | uint(pixel.y) << 16u;
-  PathNumbers numbers =
-      PathNumbers(indexOf(pixel), uint(tracer.picture.w) + samples, tracer.seed);
   home = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u * uint(STATE_WORDS) + gl_LocalInvocationIndex;
   Path path;
-  if (isWaiting()) {
-    restorePath(path);
-  } else {
-    path = startPath(pixel, numbers);
-    park(path);
-    startRadiance(path);
-  }
+  if (isWaiting()) restorePath(path);
+  else beginPath(path, pixel, numbers);
+  shadow.waits = false;
 
   // One traversal serves all rays, since drivers inline every function: each further call site costs registers and
-  // minutes of compiling. The lane's job says what to trace next. Its stage says what to do with the hit; each stage
-  // follows from those above it.
+  // minutes of compiling.
   bool inFlight = true;
-  uint job = kPathRay;
-  int after = kGoesOn;  // the stage to resume after a shadow ray has been traced to its end
-#if INTERIORS
-  Hit arrival;          // the hit of the path's ray
-#endif
-  shadow.waits = false;
-#if MEDIA
-  float flight = 3e38;  // length of the path's current flight
-#endif
-#if TOUCHING
-  Hit crossed;          // the boundary that a shadow ray is crossing
-  bool right = true;    // whether the path could validly cross the boundary
-#endif
   // ends: each ray of a path adds 4 iterations, up to tracer.iterations; between two of them lie at most 256 boundaries
   // that a shadow ray crosses, with kMostBesides short rays each
   for (;;) {
-#if PARKED
-    forgetAddresses();
-    where += hiddenZero();
-    numbers.pixel = indexOf(pixelAt(where));
-#endif
-    // Set up the ray of this iteration.
-    int stage = kTraces;
-    Ray ray = Ray(vec3(0.0), 0.0, vec3(1.0), 0.0);
-    uint skip = kNoHit;
-    if (job == kPathRay) {
-      if (loopIterations >= tracer.iterations) break;
-      loopIterations += 4u;
-      take(path);
-      ray = Ray(path.origin, 0.0, path.direction, 3e38);
-      skip = path.skip;
-#if ASKED
-      notePlace(path);
-#endif
-#if MEDIA
-      // In a homogeneous medium the flight length is drawn first: short rays are cheap to trace.
-      int medium = mediumInside(path.inside);
-      flight = medium >= 0 ? beginFlight(path, mediumOf(medium), numbers) : 3e38;
-#if WALKS
-      if (medium >= 0) {
-        if (!walk(path, mediumOf(medium), flight, numbers)) stage = kEnds;
-        park(path);
-      }
-      skip = path.skip;
-#endif
-      ray = Ray(path.origin, 0.0, path.direction, flight + flightMargin());
-#endif
-    }
-#if !SHADOW_AT_ONCE
-    if (job == kShadowRay) {
-      takeShadow();
-#if INTERIORS
-      ray = Ray(shadow.origin, shadow.tMin, shadow.direction, shadow.infinite ? 3e38 : 1.0);
-#else
-      ray = Ray(shadow.origin, 0.0, shadow.direction, shadow.infinite ? 3e38 : 1.0);
-#endif
-      skip = shadow.skip;
-    }
-#endif
-#if TOUCHING
-    if (job == kBesidesRay) {
-      takeBesides();
-      Surface surface;
-      if (shadow.waits) {
-        takeShadow();
-        takeHit(1u, crossed);
-        surface = surfaceAt(crossed.triangle, crossed.barycentrics, shadow.direction);
-      } else {
-        take(path);
-        takeHit(0u, arrival);
-        surface = surfaceAt(arrival.triangle, arrival.barycentrics, path.direction);
-      }
-      besides.gap = gapAt(surface);
-      ray = besidesRay(besides, surface.position, -besides.gap * surface.geometricNormal);
-      parkBesides();
-      skip = besides.skip;
-    }
-#endif
+    forget(where, numbers);
+    stage = kTraces;
+    Ray ray;
+    uint skip;
+    if (!setUpRay(path, numbers, ray, skip)) break;
 
     // The only traversal.
     BvhTraversal traversal = beginRay(ray, skip);
@@ -420,182 +607,13 @@ void main() {
     for (int left = bvhNodeCount(); left > 0 && !isDone(traversal); --left) advanceRay(traversal, any);
     Hit hit = traversal.hit;
     if (!any) hit = finishRay(traversal, ray.direction);
-#if PARKED
-    forgetAddresses();
-    where += hiddenZero();
-    numbers.pixel = indexOf(pixelAt(where));
-#endif
+    forget(where, numbers);
 
-    // Assign the hit to the job: the path's arrival, a step across a boundary, or a shadow ray's hit.
-#if !INTERIORS
-    Hit arrival = hit;
-#endif
-    if (job == kPathRay && stage == kTraces) {
-      arrival = hit;
-      parkHit(0u, hit);
-      stage = kFlies;
-    }
-#if TOUCHING
-    if (job == kBesidesRay) {
-      takeBesides();
-      vec3 ahead = 0.5 * ray.direction;
-      bool goesOn = crossBesides(besides, hit, ahead);
-      if (!goesOn && shadow.waits) {
-        takeShadow();
-        shadow.inside = besides.beyond;
-        if (hit.triangle != kNoHit) shadow.light = vec3(0.0);
-        shadow.tMin +=
-            dot(ahead, ahead) / max(dot(ahead, shadow.direction), 0.01 * besides.gap * length(shadow.direction));
-        job = kShadowRay;
-        if (!shadowGoesOn()) stage = kLit;
-        parkShadow();
-      } else if (!goesOn) {
-        job = kPathRay;
-        stage = kMeets;
-        if (hit.triangle != kNoHit) {  // a surface immediately behind: the path has hit it from its current position
-          take(path);
-          takeHit(0u, arrival);
-          besides.beyond = besides.before = path.inside;
-          arrival.triangle = hit.triangle;
-          arrival.barycentrics = hit.barycentrics;
-          parkHit(0u, arrival);
-        } else if (!right) {
-          atomicAdd(wrongCrossings, 1u);
-        }
-      }
-      parkBesides();
-    } else
-#endif
-    // A shadow ray may go on behind what it met.
-    if (job == kShadowRay) {
-      takeShadow();
-#if INTERIORS
-      bool goesOn = crossShadow(hit);
-#if TOUCHING
-      if (goesOn) {
-        job = kBesidesRay;
-        crossed = hit;
-        parkHit(1u, hit);
-        besides = Besides(shadow.inside, shadow.inside, 0.0, hit.triangle, 0u, 0.0);
-        parkBesides();
-      }
-#else
-      goesOn = goesOn && shadowGoesOn();
-#endif
-      if (!goesOn) stage = kLit;
-#else
-      if (hit.triangle != kNoHit) shadow.light = vec3(0.0);
-      stage = kLit;
-#endif
-      parkShadow();
-    }
-    // Add the shadow ray's light; the path resumes where it waited.
-    if (stage == kLit) {
-      takeShadow();
-      addRadiance(path, shadow.light);
-#if ASKED
-      take(path);
-      noteShadow(path, after == kFlown, numbers);
-#endif
-      shadow.waits = false;
-      job = kPathRay;
-      stage = after;
-    }
-
-    // The flight through a medium: sample lamps along it, then decide whether it ends before the surface.
-#if MEDIA
-    if (stage == kFlies) {
-      take(path);
-      int medium = mediumInside(path.inside);
-      stage = medium < 0 ? kArrives : kFlown;
-#if NEXT_EVENT && (POINTS || SPOTS) && !DISTANCE_WITHOUT_PDF && !BOOSTED_INTERACTION
-      if (medium >= 0 && media[medium].grid < 0 && lampsReach(path)) {
-        takeHit(0u, arrival);
-        addPointLight(path, mediumOf(medium), channelProbabilities(path.throughput),
-                      flownDistance(path, arrival, flight), numbers);
-        if (shadow.waits) {
-          job = kShadowRay;
-          after = kFlown;
-          stage = kTraces;
-        }
-      }
-#endif
-    }
-    if (stage == kFlown) {
-      take(path);
-      takeHit(0u, arrival);
-      int became = crossMedium(path, mediumInside(path.inside), flight, arrival, numbers);
-      park(path);
-      stage = became == kFlightArrives ? kArrives : became == kScattered ? kGoesOn : kEnds;
-      if (stage != kArrives && shadow.waits) {
-        job = kShadowRay;
-        after = stage;
-        stage = kTraces;
-      }
-    }
-#else
-    if (stage == kFlies) stage = kArrives;
-#endif
-    // At the surface: first find all boundaries there, then handle the hit and sample lamps.
-    if (stage == kArrives) {
-      stage = kMeets;
-#if TOUCHING
-      // The other boundaries crossed by the step to the far side: a face that coincides with this one belongs to the
-      // same interface.
-      take(path);
-      takeHit(0u, arrival);
-      besides = Besides(path.inside, path.inside, 0.0, arrival.triangle, 0u, 0.0);
-      int rank = arrival.triangle != kNoHit ? rankOf(arrival.triangle) : -1;
-      if (rank >= 0) {
-        right = crossBoundary(besides.beyond, rank, facesAgainst(arrival.triangle, path.direction));
-        job = kBesidesRay;
-        stage = kTraces;
-      }
-      parkBesides();
-#endif
-    }
-    if (stage == kMeets) {
-      take(path);
-      takeHit(0u, arrival);
-      stage = meet(path, arrival, numbers) ? kGoesOn : kEnds;
-      park(path);
-#if SHADOW_AT_ONCE
-      if (shadow.waits &&
-          !anyHit(Ray(shadow.origin, 0.0, shadow.direction, shadow.infinite ? 3e38 : 1.0), shadow.skip)) {
-        path.radiance += shadow.light;
-#if ASKED
-        noteShadow(path, false, numbers);
-#endif
-      }
-      shadow.waits = false;
-#else
-      if (shadow.waits) {
-        job = kShadowRay;
-        after = stage;
-        stage = kTraces;
-      }
-#endif
-    }
-    // A sample is complete.
-    if (stage == kEnds) {
-      uint samples = ++numbers.sampleIndex - uint(tracer.picture.w);
-#if PARKED
-      where += hiddenZero();
-      pixel = pixelAt(where);
-      film = readFilm(pixel);
-#endif
-      addSample(film, radianceOf(path), samples);
-#if PARKED
-      writeFilm(pixel, film, samples);
-#endif
-      if (samples >= tracer.sampleTarget) {
-        inFlight = false;
-        break;
-      }
-      path = startPath(pixel, numbers);
-      park(path);
-      startRadiance(path);
-    }
+    useHit(path, ray, hit, numbers);
+    fly(path, numbers);
+    arrive(path, numbers);
+    inFlight = stage != kEnds || nextSample(path, film, where, numbers);
+    if (!inFlight) break;
   }
 
   // Store the counters, the film, and the path in flight.

@@ -17,12 +17,16 @@ struct LightSample {
 layout(std430, binding = 4) readonly restrict buffer LightBlock { PathLight lights[]; };
 uint pickedLight;  // by sampleLight; for callers that need it
 
+// The light that these words select.
+uint pick(uvec4 words) {
+  uint i = scaledWord(words.x, uint(lights.length()));
+  return unitFloat(words.y) >= lights[i].threshold ? lights[i].alias : i;
+}
+
 // xi: position on the light; words: select the light. False: the selected light does not reach the point.
 bool sampleLight(vec3 position, vec2 xi, uvec4 words, out LightSample light) {
-  uint i = scaledWord(words.x, uint(lights.length()));
-  if (unitFloat(words.y) >= lights[i].threshold) i = lights[i].alias;
-  PathLight source = lights[i];
-  pickedLight = i;
+  pickedLight = pick(words);
+  PathLight source = lights[pickedLight];
   light = LightSample(vec3(0.0), 0.0, vec3(0.0), source.a, false);
   bool reaches = false;
 #if EMISSION

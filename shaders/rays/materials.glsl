@@ -63,7 +63,7 @@ vec4 readTexture(PathTexture t, vec2 texCoord) { return readAtlas(textureAtlas, 
 // Called by the ray caster. Alpha below one half is cut out.
 bool isCutOut(uint triangle, vec2 barycentrics) {
   uint material = triangleData[triangle * TRIANGLE_WORDS].w;
-  PathTexture mask = materials[material].maskTexture;  // see pathtracer/volume.glsl, mediumOf()
+  PathTexture mask = materials[material].maskTexture;  // see pathtracer/crossing.glsl, mediumOf()
   return readTexture(mask, texCoordAt(triangle, barycentrics)).a < 0.5;
 }
 #endif

@@ -45,7 +45,7 @@ TEST(Form, NoLineOfSourcesIsWiderThan120Columns) {
 }
 
 // NVIDIA's compiler refuses a structure that lies in a storage block as an argument (C1317), where OpenGL allows it: it
-// is copied first, or a function returns it (mediumOf of pathtracer/volume.glsl).
+// is copied first, or a function returns it (mediumOf of pathtracer/crossing.glsl).
 TEST(Form, NoStructureOfAStorageBlockIsAnArgument) {
   const std::regex blockOf(R"(\bbuffer\s+\w+\s*\{\s*(\w+)\s+(\w+)\[\];)"), structOf(R"(^struct (\w+))"),
       memberOf(R"(^\s+(\w+) (\w+);)"), argument(R"(\w\([^;]*?\b(\w+)\[[^\]]*\](?:\.(\w+))?\s*[,)])");

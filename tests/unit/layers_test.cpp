@@ -1,5 +1,5 @@
-// The layers of engine/CMakeLists.txt and docs/architecture.md: which folders of engine/ include which, and that OpenGL
-// is called in engine/gl and engine/host alone.
+// The layers of engine/CMakeLists.txt and docs/architecture.md: which folders of engine/ include which, that OpenGL is
+// called in engine/gl and engine/host alone, and that it is no newer than 4.3.
 #include "base/files.hpp"
 
 #include <gtest/gtest.h>
@@ -89,6 +89,43 @@ TEST(Layers, OpenGlIsCalledByItsFoldersAlone) {
       }
     }
   EXPECT_GT(inside, 100u);
+}
+
+/// Each function of glcorearb.h, and the version or extension that it came with.
+std::map<std::string, std::string> originsOfOpenGl(const fs::path& header) {
+  const std::regex section("^#ifndef (GL_\\w+)"), declaration("^GLAPI .*APIENTRY (gl\\w+)");
+  std::istringstream lines(readFileText(header));
+  std::map<std::string, std::string> result;
+  std::string line, current;
+  for (std::smatch match; std::getline(lines, line);) {
+    if (std::regex_search(line, match, section)) current = match[1];
+    else if (std::regex_search(line, match, declaration)) result.try_emplace(match[1], current);
+  }
+  return result;
+}
+
+// A context of 4.5 would hide it. Exceptions are probed, and have a fall-back.
+TEST(Layers, OpenGlIsNoNewerThan43) {
+  const fs::path root(LUCERNA_SOURCE_DIR), header("/usr/include/GL/glcorearb.h");
+  if (!fs::exists(header)) GTEST_SKIP() << header << " is missing";
+  const std::map<std::string, std::string> origins = originsOfOpenGl(header);
+  EXPECT_EQ(origins.at("glDispatchCompute"), "GL_VERSION_4_3");
+  EXPECT_EQ(origins.at("glBufferStorage"), "GL_VERSION_4_4");
+  const std::regex name(R"(\bgl[A-Z]\w*)"), old("GL_VERSION_([1-3]_.|4_[0-3])");
+  const std::set<std::string> probed{"glClearTexImage", "glGetGraphicsResetStatusARB"};
+  std::size_t seen = 0;
+  for (const char* top : {"engine", "demo", "tests"})
+    for (const fs::path& file : sourcesIn(root / top)) {
+      const std::string code = codeOf(file);
+      for (std::sregex_iterator match(code.begin(), code.end(), name), end; match != end; ++match) {
+        const auto origin = origins.find(match->str());
+        if (origin == origins.end() || probed.contains(origin->first)) continue;
+        EXPECT_TRUE(std::regex_match(origin->second, old))
+            << fs::relative(file, root) << " has " << origin->first << " of " << origin->second;
+        ++seen;
+      }
+    }
+  EXPECT_GT(seen, 400u);
 }
 
 }  // namespace

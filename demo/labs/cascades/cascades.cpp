@@ -25,7 +25,8 @@ double shown(const glm::dvec3& p, double halfExtent, double band) {
   return 0.0;
 }
 
-void check(Checks& c) {
+struct CascadesChecks {
+  Checks& c;
   const double cell = c.yours("cell", 0.2, 1.5), place = c.yours("place", -20.0, -3.0),
                halfExtent = c.yours("half extent", 1.2, 1.5), band = c.yours("band", 0.15, 0.4);
   const double count = c.yours("slices", 3.0, 6.0, 0), near = c.yours("near", 0.1, 0.5),
@@ -36,17 +37,9 @@ void check(Checks& c) {
   const double full = 1.0 - band, meanWeight = std::pow(full, 3.0) +
                                                (1.0 - std::pow(full, 3.0) - 0.75 * (1.0 - std::pow(full, 4.0))) / band;
   const double cascades = c.yours("cascades", 3.0, 7.0, 0);
-  // The README's questions, with the results of common mistakes.
-  c.answer("snapped", std::floor(place / cell + 0.5) * cell, 0.0005,
-           {{{"truncation", "int() truncates towards zero; below zero that is the wrong cell"},
-             std::trunc(place / cell + 0.5) * cell}});
-  c.answer("split", split, 0.005,
-           {{{"schemes-exchanged", "lambda belongs to the logarithmic scheme"},
-             (1.0 - lambda) * near * std::pow(far / near, 1.0 / count) + lambda * (near + (far - near) / count)}});
-  c.answer("saving", std::pow(8.0, cascades - 1.0) / cascades, 0.005, {});
 
   // Task 1: snapped: a cascade moves by whole cells.
-  if (c.task(1)) {
+  void snapped() {
     const auto of = [](double (*value)(double x, double s)) {
       return
           [=](Point p) { return glm::dvec4(value(p[0].x, p[0].w), value(p[0].y, p[0].w), value(p[0].z, p[0].w), 0.0); };
@@ -78,7 +71,7 @@ void check(Checks& c) {
                {.probe = 8, .inputs = {four(cell)}, .expected = std::pow(static_cast<float>(cell), 2.0) / 12.0});
   }
   // Task 2: cascadeOf: the finest cascade that holds a point.
-  if (c.task(2)) {
+  void cascadeOf() {
     const auto of = [](double (*norm)(const glm::dvec3&), double ratio, int outside) {
       return [=](Point p) {
         const double m = norm(glm::dvec3(p[0]) - glm::dvec3(p[1]));
@@ -122,7 +115,7 @@ void check(Checks& c) {
              {{"one-axis", "all three axes count"}, of([](const glm::dvec3& v) { return std::abs(v.x); }, 2.0, -1)}}});
   }
   // Task 3: blendWeight: linear over the outer band.
-  if (c.task(3)) {
+  void blendWeight() {
     const auto of = [](double (*value)(const glm::dvec3& off, double b)) {
       return [=](Point p) { return glm::dvec4(value((glm::dvec3(p[0]) - glm::dvec3(p[1])) / double(p[0].w), p[1].w)); };
     };
@@ -159,7 +152,7 @@ void check(Checks& c) {
                {.probe = 9, .inputs = {four(halfExtent, band)}, .expected = meanWeight});
   }
   // Task 4: blended: flux of cells of two sizes.
-  if (c.task(4)) {
+  void blended() {
     const auto of = [](double (*value)(double f, double fc, double g, double gc, double w)) {
       return [=](Point p) { return glm::dvec4(value(p[0].x, p[0].y, p[0].z, p[0].w, p[1].x)); };
     };
@@ -190,7 +183,7 @@ void check(Checks& c) {
 #undef BLEND
   }
   // Task 5: splitDistance: between logarithmic and even splits.
-  if (c.task(5)) {
+  void splitDistance() {
     const auto of = [](double (*value)(double t, double n, double f, double l)) {
       return [=](Point p) { return glm::dvec4(value((p[0].x + 1.0) / p[0].y, p[0].z, p[0].w, p[1].x)); };
     };
@@ -239,7 +232,7 @@ void check(Checks& c) {
     c.curve(curve);
   }
   // Task 6: three cascades around a point, by tasks 2 to 4.
-  if (c.task(6)) {
+  void together() {
     c.twin("both sides of a border agree", {.probe = 6,
                                             .stride = 2,
                                             .draw =
@@ -267,12 +260,29 @@ void check(Checks& c) {
                             .caption = "Three cascades, each a little brighter than the one within, blended by your "
                                        "functions: no line may show; the reference is the twin in double precision"});
   }
-  // Numbers that the README quotes.
-  c.figure("snapped", std::floor(place / cell + 0.5) * cell);
-  c.figure("split", split);
-  c.figure("mean weight", meanWeight);
-  c.figure("saving", std::pow(8.0, cascades - 1.0) / cascades);
-}
+
+  void run() {
+    // The README's questions, with the results of common mistakes.
+    c.answer("snapped", std::floor(place / cell + 0.5) * cell, 0.0005,
+             {{{"truncation", "int() truncates towards zero; below zero that is the wrong cell"},
+               std::trunc(place / cell + 0.5) * cell}});
+    c.answer("split", split, 0.005,
+             {{{"schemes-exchanged", "lambda belongs to the logarithmic scheme"},
+               (1.0 - lambda) * near * std::pow(far / near, 1.0 / count) + lambda * (near + (far - near) / count)}});
+    c.answer("saving", std::pow(8.0, cascades - 1.0) / cascades, 0.005, {});
+    if (c.task(1)) snapped();
+    if (c.task(2)) cascadeOf();
+    if (c.task(3)) blendWeight();
+    if (c.task(4)) blended();
+    if (c.task(5)) splitDistance();
+    if (c.task(6)) together();
+    // Numbers that the README quotes.
+    c.figure("snapped", std::floor(place / cell + 0.5) * cell);
+    c.figure("split", split);
+    c.figure("mean weight", meanWeight);
+    c.figure("saving", std::pow(8.0, cascades - 1.0) / cascades);
+  }
+};
 
 }  // namespace
 
@@ -287,6 +297,6 @@ const Lab kCascadesLab{5,
                         {5, "splitDistance", 10, {}},
                         {6, "together: three cascades without a seam", 10, {2, 3, 4}}},
                        15,
-                       check};
+                       [](Checks& c) { CascadesChecks{c}.run(); }};
 
 }  // namespace lucerna::demo::labs

@@ -13,7 +13,8 @@ constexpr double kPi = std::numbers::pi;
 glm::dvec3 three(const glm::vec4& v) { return glm::dvec3(v); }
 glm::vec4 withW(const glm::dvec3& v, double w = 0.0) { return glm::vec4(glm::vec3(v), static_cast<float>(w)); }
 
-void check(Checks& c) {
+struct FurnaceChecks {
+  Checks& c;
   const double albedo = c.yours("albedo", 0.3, 0.9), emission = c.yours("emission", 0.5, 2.0);
   const double side = c.yours("lamp side", 0.5, 1.5), height = c.yours("lamp height", 0.8, 1.6),
                away = c.yours("lamp away", 0.2, 1.0);
@@ -27,18 +28,9 @@ void check(Checks& c) {
   const Mistake absolute{
       "absolute-cosine",
       "light from behind the surface counts like light from the front: use max(0, cos), not abs(cos)"};
-  // The README's questions, with the results of common mistakes.
-  c.answer(
-      "furnace", furnace, 0.005,
-      {{{"lost-emission", "that is only the reflected part: the walls' own emission is seen too"}, furnace - emission},
-       {{"albedo-sum", "the parts form a geometric series: 1 / (1 - albedo)"}, emission * (1.0 + albedo)}});
-  c.answer("irradiance", irradiance, 0.02,
-           {{{"lost-cosine", "a cosine is missing: there are two, one at the floor and one at the lamp"},
-             side * side * height / std::pow(away * away + height * height, 1.5)}});
-  c.answer("bounces", bounces, 0.0, {});
 
   // Task 1: reflected: the integrand for a Lambertian surface.
-  if (c.task(1)) {
+  void reflected() {
     const auto formula = [&](double constant, double (*cosine)(double)) {
       return [=](Point p) {
         return glm::dvec4(constant * three(p[0]) * three(p[3]) * cosine(glm::dot(three(p[1]), three(p[2]))), 0.0);
@@ -85,9 +77,8 @@ void check(Checks& c) {
     }
     c.curve(curve);
   }
-
   // Task 2: sampleCosine: directions distributed as the cosine.
-  if (c.task(2)) {
+  void sampleCosine() {
     constexpr int kRings = 8, kSectors = 16;
     const glm::dvec3 n = glm::normalize(glm::dvec3(c.parameter("sx", -1.0, 1.0), c.parameter("sy", -1.0, 1.0), -0.6));
     // Rings of equal probability: cos^2 is uniform.
@@ -128,9 +119,8 @@ void check(Checks& c) {
                        "the directions crowd about the normal: the height is the square root of 1 - u, no other power"},
                       shares([](double m) { return m * m * m * m; })}}});
   }
-
   // Task 3: pdfCosine: their density.
-  if (c.task(3)) {
+  void pdfCosine() {
     const glm::dvec3 n = glm::normalize(glm::dvec3(0.3, c.parameter("py", -1.0, 1.0), c.parameter("pz", -1.0, 1.0)));
     const auto of = [](double (*value)(double)) {
       return [=](Point p) { return glm::dvec4(value(glm::dot(three(p[0]), three(p[1])))); };
@@ -150,9 +140,8 @@ void check(Checks& c) {
         c.mean("the density's integral over the sphere is 1", {.probe = 5, .inputs = {withW(n)}, .expected = 1.0}) &&
         c.mean("furnace by your directions: no noise", {.probe = 6, .inputs = {withW(n, albedo)}, .expected = albedo});
   }
-
   // Task 4: solidAngleOfArea: from area to solid angle.
-  if (c.task(4)) {
+  void solidAngleOfArea() {
     const auto of = [](double (*value)(double cosine, double distance)) {
       return [=](Point p) {
         const glm::dvec3 way = three(p[0]) - three(p[1]);
@@ -182,7 +171,7 @@ void check(Checks& c) {
              {{"not-over-area", "the distance is missing"}, of([](double x, double) { return std::max(0.0, x); })}}});
   }
   // Task 5: furnace: radiance after a number of bounces.
-  if (c.task(5)) {
+  void furnaceRadiance() {
     const auto of = [](double (*value)(double e, double a, int n)) {
       return [=](Point p) { return glm::dvec4(value(p[0].x, p[0].y, static_cast<int>(p[0].z))); };
     };
@@ -204,9 +193,8 @@ void check(Checks& c) {
                          {{"last-bounce-alone", "that is the light of the last bounce alone: sum over all of them"},
                           of([](double e, double a, int n) { return e * std::pow(a, n); })}}});
   }
-  // Combined: a floor under a lamp; each pixel is an estimate over the lamp's area.
   // Task 6: a floor under a square lamp, using tasks 1 and 4.
-  if (c.task(6)) {
+  void together() {
     const std::vector<glm::vec4> lamp{withW({side, height, albedo}), withW({away, 0.0, 0.0})};
     c.mean("light of a square lamp at a point", {.probe = 8, .inputs = lamp, .expected = albedo / kPi * irradiance}) &&
         c.picture("lamp", {.probe = 10,
@@ -221,14 +209,32 @@ void check(Checks& c) {
                            .caption = "The floor under a square lamp, from above: your two functions, 64 points of the "
                                       "lamp a pixel; the reference is Lambert's formula for polygons"});
   }
-  // Numbers that the README quotes.
-  c.figure("furnace", furnace);
-  c.figure("irradiance", irradiance);
-  c.figure("bounces", bounces);
-  // For 4 albedo max(0, cos) over the sphere, see the curve of task 1; 64 samples in each of 4096 invocations.
-  c.figure("deviation of one sample, over the albedo", std::sqrt(16.0 / 6.0 - 1.0));
-  c.figure("standard error of the check, % of the albedo", 100.0 * std::sqrt((16.0 / 6.0 - 1.0) / (64.0 * 4096.0)));
-}
+
+  void run() {
+    // The README's questions, with the results of common mistakes.
+    c.answer("furnace", furnace, 0.005,
+             {{{"lost-emission", "that is only the reflected part: the walls' own emission is seen too"},
+               furnace - emission},
+              {{"albedo-sum", "the parts form a geometric series: 1 / (1 - albedo)"}, emission * (1.0 + albedo)}});
+    c.answer("irradiance", irradiance, 0.02,
+             {{{"lost-cosine", "a cosine is missing: there are two, one at the floor and one at the lamp"},
+               side * side * height / std::pow(away * away + height * height, 1.5)}});
+    c.answer("bounces", bounces, 0.0, {});
+    if (c.task(1)) reflected();
+    if (c.task(2)) sampleCosine();
+    if (c.task(3)) pdfCosine();
+    if (c.task(4)) solidAngleOfArea();
+    if (c.task(5)) furnaceRadiance();
+    if (c.task(6)) together();
+    // Numbers that the README quotes.
+    c.figure("furnace", furnace);
+    c.figure("irradiance", irradiance);
+    c.figure("bounces", bounces);
+    // For 4 albedo max(0, cos) over the sphere, see the curve of task 1; 64 samples in each of 4096 invocations.
+    c.figure("deviation of one sample, over the albedo", std::sqrt(16.0 / 6.0 - 1.0));
+    c.figure("standard error of the check, % of the albedo", 100.0 * std::sqrt((16.0 / 6.0 - 1.0) / (64.0 * 4096.0)));
+  }
+};
 
 }  // namespace
 
@@ -243,6 +249,6 @@ const Lab kFurnaceLab{1,
                        {5, "furnace", 10, {}},
                        {6, "together: the floor under a lamp", 10, {1, 4}}},
                       15,
-                      check};
+                      [](Checks& c) { FurnaceChecks{c}.run(); }};
 
 }  // namespace lucerna::demo::labs

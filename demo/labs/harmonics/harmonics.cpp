@@ -16,36 +16,26 @@ glm::dvec4 joined(double a, const glm::dvec3& b) { return {a, b.x, b.y, b.z}; }
 glm::vec4 inFloat(const glm::dvec4& v) { return glm::vec4(v); }
 glm::dvec4 some(Random& r) { return {r.uniform(-1, 1), r.uniform(-1, 1), r.uniform(-1, 1), r.uniform(-1, 1)}; }
 
-void check(Checks& c) {
+struct HarmonicsChecks {
+  Checks& c;
   const double base = c.yours("base", 0.8, 2.0), slope = c.yours("slope", 0.3, 0.7),
                tilt = c.yours("tilt", 20.0, 70.0, 0), angle = c.yours("angle", 15.0, 85.0, 0);
   const double cosine = std::cos(tilt * kPi / 180.0);
   const double exact = kPi * base + 2.0 * kPi / 3.0 * slope * cosine, lobe = 0.25 + 0.5 * std::cos(angle * kPi / 180.0);
-  // The README's questions, with the results of common mistakes.
-  c.answer("irradiance", exact, 0.005,
-           {{{"lobe-lost", "that is radiance times pi: band 1 is damped by the cosine, 2 pi / 3 for pi"},
-             kPi * (base + slope * cosine)}});
-  c.answer("reconstructed", lobe, 0.005,
-           {{{"other", "that is the cosine itself: bands 0 and 1 hold an approximation of it"},
-             std::cos(angle * kPi / 180.0)}});
-  // Relative to the integral of max(0, cos)^2, 2 pi / 3: the sum of the squared coefficients.
-  const double share = (kLobe0 * kLobe0 + kLobe1 * kLobe1) / (2.0 * kPi / 3.0);
-  c.answer("share", share, 0.005);
-
   const glm::dvec3 axis = glm::normalize(glm::dvec3(c.parameter("ax", -1, 1), c.parameter("ay", -1, 1), 0.8));
   const glm::dvec3 normal = glm::normalize(glm::dvec3(c.parameter("nx", -1, 1), c.parameter("ny", -1, 1), 0.5));
   const glm::dvec4 reference = joined(std::sqrt(4.0 * kPi) * base, std::sqrt(4.0 * kPi / 3.0) * slope * axis);
   const std::vector<glm::vec4> environment{inFloat({axis.x, axis.y, axis.z, slope}),
                                            glm::vec4(static_cast<float>(base), 0, 0, 0)};
-  const auto with = [&](glm::dvec4 v) {
+  std::vector<glm::vec4> with(glm::dvec4 v) const {
     auto e = environment;
     e.push_back(inFloat(v));
     return e;
-  };
+  }
   const glm::dvec4 probe{0.5, -0.4, 0.6, 0.7}, other{0.3, 0.8, -0.2, 0.5};
 
   // Task 1: shBasis: bands 0 and 1.
-  if (c.task(1)) {
+  void shBasis() {
     const auto of = [](double y0, double y1) { return [=](Point p) { return joined(y0, y1 * glm::dvec3(p[0])); }; };
     c.twin(
         "basis at points",
@@ -66,7 +56,7 @@ void check(Checks& c) {
                {.probe = 2, .inputs = {inFloat(probe), inFloat(other)}, .expected = glm::dot(probe, other)});
   }
   // Task 2: cosineLobe: the clamped cosine about a normal.
-  if (c.task(2)) {
+  void cosineLobe() {
     const auto of = [](double l0, double l1) { return [=](Point p) { return joined(l0, l1 * glm::dvec3(p[0])); }; };
     c.twin(
         "lobe at points",
@@ -86,7 +76,7 @@ void check(Checks& c) {
                {.probe = 4, .inputs = {inFloat(glm::dvec4(normal, 0.0)), inFloat(probe)}, .expected = 0.0});
   }
   // Task 3: projectSample: one sample's estimate.
-  if (c.task(3)) {
+  void projectSample() {
     const auto of = [](double (*weight)(double l, double pdf)) {
       return [=](Point p) { return weight(p[1].x, p[1].y) * joined(kY0, kY1 * glm::dvec3(p[0])); };
     };
@@ -122,7 +112,7 @@ void check(Checks& c) {
     c.curve(curve);
   }
   // Task 4: irradiance: from the coefficients of radiance.
-  if (c.task(4)) {
+  void irradiance() {
     const auto of = [](double l0, double l1) {
       return [=](Point p) { return glm::dvec4(glm::dot(glm::dvec4(p[0]), joined(l0, l1 * glm::dvec3(p[1])))); };
     };
@@ -153,7 +143,7 @@ void check(Checks& c) {
                 .expected = kPi * base + 2.0 * kPi / 3.0 * slope * glm::dot(normal, axis)});
   }
   // Task 5: rotateAboutZ: band 1 rotates like a vector.
-  if (c.task(5)) {
+  void rotateAboutZ() {
     const auto of = [](double sense, int axisOf) {
       return [=](Point p) {
         const double s = sense * std::sin(double(p[1].x)), k = std::cos(double(p[1].x));
@@ -178,7 +168,7 @@ void check(Checks& c) {
                 {{"not-turned", "nothing turns"}, [](Point p) { return glm::dvec4(p[0]); }}}});
   }
   // Task 6: a ball in an environment, using tasks 1 to 4.
-  if (c.task(6))
+  void together() {
     c.picture(
         "ball",
         {.probe = 10,
@@ -191,13 +181,33 @@ void check(Checks& c) {
                                                             glm::dot(axis, glm::dvec3(x, y, std::sqrt(1.0 - square))));
              },
          .caption = "A white ball in an environment of bands 0 and 1, 64 samples a pixel; the reference is exact"});
-  // Numbers that the README quotes.
-  c.figure("irradiance", exact);
-  c.figure("reconstructed", lobe);
-  c.figure("share", share);
-  // White reflects irradiance / pi: band 1 of the environment, slope, times 2/3.
-  c.figure("brightest less darkest normal", 2.0 * (2.0 / 3.0) * slope);
-}
+  }
+
+  void run() {
+    // The README's questions, with the results of common mistakes.
+    c.answer("irradiance", exact, 0.005,
+             {{{"lobe-lost", "that is radiance times pi: band 1 is damped by the cosine, 2 pi / 3 for pi"},
+               kPi * (base + slope * cosine)}});
+    c.answer("reconstructed", lobe, 0.005,
+             {{{"other", "that is the cosine itself: bands 0 and 1 hold an approximation of it"},
+               std::cos(angle * kPi / 180.0)}});
+    // Relative to the integral of max(0, cos)^2, 2 pi / 3: the sum of the squared coefficients.
+    const double share = (kLobe0 * kLobe0 + kLobe1 * kLobe1) / (2.0 * kPi / 3.0);
+    c.answer("share", share, 0.005);
+    if (c.task(1)) shBasis();
+    if (c.task(2)) cosineLobe();
+    if (c.task(3)) projectSample();
+    if (c.task(4)) irradiance();
+    if (c.task(5)) rotateAboutZ();
+    if (c.task(6)) together();
+    // Numbers that the README quotes.
+    c.figure("irradiance", exact);
+    c.figure("reconstructed", lobe);
+    c.figure("share", share);
+    // White reflects irradiance / pi: band 1 of the environment, slope, times 2/3.
+    c.figure("brightest less darkest normal", 2.0 * (2.0 / 3.0) * slope);
+  }
+};
 
 }  // namespace
 
@@ -212,6 +222,6 @@ const Lab kHarmonicsLab{3,
                          {5, "rotateAboutZ", 10, {}},
                          {6, "together: a ball in an environment", 10, {4}}},
                         15,
-                        check};
+                        [](Checks& c) { HarmonicsChecks{c}.run(); }};
 
 }  // namespace lucerna::demo::labs

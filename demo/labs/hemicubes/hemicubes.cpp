@@ -65,22 +65,16 @@ glm::dvec3 directionOf(int face, double x, double y) {
   }
 }
 
-void check(Checks& c) {
+struct HemicubesChecks {
+  Checks& c;
   const double side = c.yours("square side", 0.6, 1.6), height = c.yours("square height", 0.7, 1.5),
                away = c.yours("square away", 0.0, 1.0);
   const double x = c.yours("pixel x", 0.1, 0.95), y = c.yours("pixel y", 0.1, 0.95),
                reflectance = c.yours("reflectance", 0.6, 0.95), change = c.yours("change", 0.001, 0.01, 4);
   const double factor = squareLampIrradiance(side, height, {away, 0.0, 0.0}) / kPi;
-  // The README's questions, with the results of common mistakes.
-  c.answer("form factor", factor, 0.02, {});
-  c.answer(
-      "published", 1.0 + x * x + y * y, 0.005,
-      {{{"upside-down", "the published map weighs this pixel too much, not too little"}, 1.0 / (1.0 + x * x + y * y)}});
-  c.answer("bound", change * reflectance / (1.0 - reflectance), 0.005,
-           {{{"change-is-no-error", "the last change is not the error: the changes to come add up"}, change}});
 
   // Task 1: deltaTop: form factor of a small area of the top.
-  if (c.task(1)) {
+  void deltaTop() {
     const auto of = [](double (*value)(double square)) {
       return
           [=](Point p) { return glm::dvec4(p[0].z * value(double(p[0].x) * p[0].x + double(p[0].y) * p[0].y + 1.0)); };
@@ -105,7 +99,7 @@ void check(Checks& c) {
                        }}}});
   }
   // Task 2: deltaSide: of a small area of a side.
-  if (c.task(2)) {
+  void deltaSide() {
     const auto of = [](double (*value)(double z, double square)) {
       return [=](Point p) {
         return glm::dvec4(p[0].z * value(p[0].y, double(p[0].x) * p[0].x + double(p[0].y) * p[0].y + 1.0));
@@ -133,7 +127,7 @@ void check(Checks& c) {
                        }}}});
   }
   // Task 3: pixelDirection: every face, every pixel.
-  if (c.task(3)) {
+  void pixelDirection() {
     const auto of = [](double shift, bool halfHeight, bool unit) {
       return [=](Point p) {
         const double n = p[0].w, u = 2.0 * (p[0].y + shift) / n,
@@ -167,7 +161,7 @@ void check(Checks& c) {
                  }}}});
   }
   // Task 6, before tasks 4 and 5: form factors on the whole hemicube, by tasks 1 and 2.
-  if (c.task(6)) {
+  void together() {
     c.mean("all pixels sum to 1", {.probe = 3, .expected = 1.0}) &&
         c.mean("form factor of a square", {.probe = 5, .inputs = {four(side, height, away)}, .expected = factor}) &&
         c.picture("square", {.probe = 10,
@@ -183,7 +177,7 @@ void check(Checks& c) {
                                         "points of the hemicube a pixel; the reference is exact"});
   }
   // Task 4: sweep: one Jacobi sweep.
-  if (c.task(4)) {
+  void sweep() {
     const auto of = [](const std::function<glm::dvec3(Point, glm::dvec3)>& value) {
       return [=](Point p) { return glm::dvec4(value(p, glm::dvec3(p[5])), 0.0); };
     };
@@ -259,7 +253,7 @@ void check(Checks& c) {
     c.curve(curve);
   }
   // Task 5: errorBound: distance from the solution.
-  if (c.task(5)) {
+  void errorBound() {
     const auto of = [](double (*value)(double change, double r)) {
       return [=](Point p) { return glm::dvec4(value(p[0].x, p[0].y)); };
     };
@@ -287,12 +281,28 @@ void check(Checks& c) {
                                                         .reference = [](Point) { return glm::dvec4(1.0); },
                                                         .points = 256});
   }
-  // Numbers that the README quotes.
-  c.figure("form factor", factor);
-  c.figure("the same by the published map", publishedFactor(side, height, away), 4);
-  c.figure("published", 1.0 + x * x + y * y);
-  c.figure("bound", change * reflectance / (1.0 - reflectance));
-}
+
+  void run() {
+    // The README's questions, with the results of common mistakes.
+    c.answer("form factor", factor, 0.02, {});
+    c.answer("published", 1.0 + x * x + y * y, 0.005,
+             {{{"upside-down", "the published map weighs this pixel too much, not too little"},
+               1.0 / (1.0 + x * x + y * y)}});
+    c.answer("bound", change * reflectance / (1.0 - reflectance), 0.005,
+             {{{"change-is-no-error", "the last change is not the error: the changes to come add up"}, change}});
+    if (c.task(1)) deltaTop();
+    if (c.task(2)) deltaSide();
+    if (c.task(3)) pixelDirection();
+    if (c.task(6)) together();
+    if (c.task(4)) sweep();
+    if (c.task(5)) errorBound();
+    // Numbers that the README quotes.
+    c.figure("form factor", factor);
+    c.figure("the same by the published map", publishedFactor(side, height, away), 4);
+    c.figure("published", 1.0 + x * x + y * y);
+    c.figure("bound", change * reflectance / (1.0 - reflectance));
+  }
+};
 
 }  // namespace
 
@@ -307,6 +317,6 @@ const Lab kHemicubesLab{6,
                          {5, "errorBound", 15, {4}},
                          {6, "together: form factors of a square", 10, {1, 2}}},
                         15,
-                        check};
+                        [](Checks& c) { HemicubesChecks{c}.run(); }};
 
 }  // namespace lucerna::demo::labs

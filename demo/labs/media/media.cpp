@@ -36,24 +36,15 @@ std::vector<double> phaseShares(double g, double (*below)(double, double)) {
 // [vanDeHulst1980, table 35]: optical depth 2, albedo 0.9, g = 0.75, normal incidence.
 constexpr double reflected = 0.0973946, passed = 0.6609577;
 
-void check(Checks& c) {
+struct MediaChecks {
+  Checks& c;
   const double g = c.yours("g", 0.3, 0.85), scattering = c.yours("scattering", 0.5, 2.0),
                absorption = c.yours("absorption", 0.1, 0.5), depth = c.yours("depth", 0.5, 2.0);
   const double table = c.yours("table", 0.5, 9.0), millilitres = c.yours("millilitres", 15.0, 600.0, 0);
   const double extinction = scattering + absorption;
-  // The README's questions, with the results of common mistakes.
-  c.answer(
-      "transmittance", std::exp(-extinction * depth), 0.005,
-      {{{"absorption-alone", "scattering takes light away too: extinction is both"}, std::exp(-absorption * depth)},
-       {{"scattering-alone", "absorption takes light away too: extinction is both"}, std::exp(-scattering * depth)}});
-  c.answer("free path", 1.0 / extinction, 0.005, {});
-  c.answer("coefficient", table * 0.01 * 23000.0 / millilitres, 0.005,
-           {{{"diluted", "that is the diluted liquid in the tank"}, table * 0.01}});
-  c.answer("way", 2.0 * depth, 0.005,
-           {{{"straight", "that is the path straight through; light enters at all angles"}, depth}});
 
   // Task 1: henyeyGreenstein: density of a cosine.
-  if (c.task(1)) {
+  void henyeyGreenstein() {
     const auto of = [](double (*value)(double cosine, double g)) {
       return [=](Point p) { return glm::dvec4(value(p[0].x, p[0].y)); };
     };
@@ -77,7 +68,7 @@ void check(Checks& c) {
         c.mean("its integral over the sphere is 1", {.probe = 2, .inputs = {four(g)}, .expected = 1.0});
   }
   // Task 2: sampleHenyeyGreenstein: cosines with that density.
-  if (c.task(2)) {
+  void sampleHenyeyGreenstein() {
     const double other = c.fresh(-0.8, -0.2);
     const auto bin = [](double h) {
       return [h](const glm::vec4& v) {
@@ -114,7 +105,7 @@ void check(Checks& c) {
                     {.probe = 3, .inputs = {four(0.0)}, .bin = bin(0.0), .shares = even});
   }
   // Task 3: freeFlight: distance to the next collision.
-  if (c.task(3)) {
+  void freeFlight() {
     const auto of = [](double (*value)(double u, double s, double a)) {
       return [=](Point p) { return glm::dvec4(value(p[0].z, p[0].x, p[0].y)); };
     };
@@ -161,7 +152,7 @@ void check(Checks& c) {
     c.curve(curve);
   }
   // Task 4: deltaTracking: collisions in a varying density.
-  if (c.task(4)) {
+  void deltaTracking() {
     const double base = c.fresh(0.3, 0.8), slope = c.fresh(0.5, 1.5), majorant = base + 2.0 * slope + 0.2;
     const auto depthAt = [=](double t) { return base * t + 0.5 * slope * t * t; };
     // Bins of equal distance over the length 2, and one for flights that pass through.
@@ -201,7 +192,7 @@ void check(Checks& c) {
                                        "bottom it thickens faster; 64 flights a pixel, the reference is exact"});
   }
   // Task 5: naturalCoefficient: of the undiluted liquid.
-  if (c.task(5)) {
+  void naturalCoefficient() {
     const auto of = [](double (*value)(double t, double ml)) {
       return [=](Point p) { return glm::dvec4(value(p[0].x, p[0].y)); };
     };
@@ -219,21 +210,40 @@ void check(Checks& c) {
                  of([](double t, double ml) { return t * 0.01 * (23000.0 + ml) / ml; })}}});
   }
   // Task 6: photons through slabs, using tasks 2 and 3.
-  if (c.task(6)) {
+  void together() {
     const std::vector<glm::vec4> slab{four(2.0, 0.9, 0.1, 0.75), four(0.0)}, through{slab[0], four(1.0)};
     c.mean("slab: reflectance by van de Hulst's table", {.probe = 9, .inputs = slab, .expected = reflected}) &&
         c.mean("slab: transmittance by van de Hulst's table", {.probe = 9, .inputs = through, .expected = passed}) &&
         c.mean("mean way through your slab without absorption",
                {.probe = 10, .inputs = {four(depth, scattering, 0.0, g)}, .expected = 2.0 * static_cast<float>(depth)});
   }
-  // Numbers that the README quotes.
-  c.figure("transmittance", std::exp(-extinction * depth));
-  c.figure("free path", 1.0 / extinction);
-  c.figure("coefficient", table * 0.01 * 23000.0 / millilitres);
-  c.figure("way", 2.0 * depth);
-  c.figure("slab of the table: reflected", reflected, 5);
-  c.figure("slab of the table: transmitted", passed, 5);
-}
+
+  void run() {
+    // The README's questions, with the results of common mistakes.
+    c.answer(
+        "transmittance", std::exp(-extinction * depth), 0.005,
+        {{{"absorption-alone", "scattering takes light away too: extinction is both"}, std::exp(-absorption * depth)},
+         {{"scattering-alone", "absorption takes light away too: extinction is both"}, std::exp(-scattering * depth)}});
+    c.answer("free path", 1.0 / extinction, 0.005, {});
+    c.answer("coefficient", table * 0.01 * 23000.0 / millilitres, 0.005,
+             {{{"diluted", "that is the diluted liquid in the tank"}, table * 0.01}});
+    c.answer("way", 2.0 * depth, 0.005,
+             {{{"straight", "that is the path straight through; light enters at all angles"}, depth}});
+    if (c.task(1)) henyeyGreenstein();
+    if (c.task(2)) sampleHenyeyGreenstein();
+    if (c.task(3)) freeFlight();
+    if (c.task(4)) deltaTracking();
+    if (c.task(5)) naturalCoefficient();
+    if (c.task(6)) together();
+    // Numbers that the README quotes.
+    c.figure("transmittance", std::exp(-extinction * depth));
+    c.figure("free path", 1.0 / extinction);
+    c.figure("coefficient", table * 0.01 * 23000.0 / millilitres);
+    c.figure("way", 2.0 * depth);
+    c.figure("slab of the table: reflected", reflected, 5);
+    c.figure("slab of the table: transmitted", passed, 5);
+  }
+};
 
 }  // namespace
 
@@ -248,6 +258,6 @@ const Lab kMediaLab{8,
                      {5, "naturalCoefficient", 5, {}},
                      {6, "together: photons in a slab", 15, {2, 3}}},
                     15,
-                    check};
+                    [](Checks& c) { MediaChecks{c}.run(); }};
 
 }  // namespace lucerna::demo::labs

@@ -14,23 +14,17 @@ constexpr double kPi = std::numbers::pi;
 glm::vec4 four(double x, double y = 0.0, double z = 0.0, double w = 0.0) { return glm::vec4(glm::dvec4(x, y, z, w)); }
 glm::vec4 four(const glm::dvec3& v, double w = 0.0) { return four(v.x, v.y, v.z, w); }
 
-void check(Checks& c) {
+struct PathsChecks {
+  Checks& c;
   const double albedo = c.yours("albedo", 0.4, 0.8), emission = c.yours("emission", 0.5, 2.0),
                survival = c.yours("survival", 0.82, 0.9);
   const double side = c.yours("lamp side", 0.8, 1.4), height = c.yours("lamp height", 0.3, 0.6),
                away = c.yours("lamp away", 0.2, 0.9);
   const double error = c.yours("error at 64", 0.01, 0.05), wanted = c.yours("error wanted", 0.001, 0.004, 4);
   const double light = albedo / kPi * squareLampIrradiance(side, height, {away, 0.0, 0.0});
-  // The README's questions, with the results of common mistakes.
-  c.answer("samples", 64.0 * std::pow(error / wanted, 2.0), 0.02,
-           {{{"linear", "the error falls with the square root of the samples"}, 64.0 * error / wanted}});
-  c.answer("bounces", survival / (1.0 - survival), 0.005,
-           {{{"one-off", "the mean of a geometric distribution that begins at 0, not at 1"}, 1.0 / (1.0 - survival)}});
-  c.answer("furnace", emission / (1.0 - albedo), 0.005,
-           {{{"survival-counts", "survival changes the noise, not the mean"}, emission / (1.0 - albedo * survival)}});
 
   // Task 1: misWeight: the balance heuristic.
-  if (c.task(1)) {
+  void misWeight() {
     const auto of = [](double (*value)(double a, double b)) {
       return [=](Point p) { return glm::dvec4(value(p[0].x, p[0].y)); };
     };
@@ -58,7 +52,7 @@ void check(Checks& c) {
         c.mean("the two weights make one", {.probe = 2, .expected = 1.0});
   }
   // Task 2: lampSample: next-event estimation.
-  if (c.task(2)) {
+  void lampSample() {
     const auto of = [](double (*value)(double l, double a, double cosX, double cosY, double d, double pdf)) {
       return [=](Point p) {
         const glm::dvec3 way = glm::dvec3(p[1]) - glm::dvec3(p[0]), w = glm::normalize(way);
@@ -99,7 +93,7 @@ void check(Checks& c) {
 #undef LIGHT
   }
   // Task 3: roulette: survivors represent the terminated paths.
-  if (c.task(3)) {
+  void roulette() {
     const auto of = [](bool exchanged, double (*after)(double t, double s)) {
       return [=](Point p) {
         return (p[0].z < p[0].y) != exchanged ? glm::dvec4(1.0, after(p[0].x, p[0].y), 0.0, 0.0) : glm::dvec4(0.0);
@@ -130,7 +124,7 @@ void check(Checks& c) {
         c.mean("throughput is kept on average", {.probe = 7, .inputs = {four(1.5, survival)}, .expected = 1.5});
   }
   // Task 4: furnacePath: one path in a closed box.
-  if (c.task(4)) {
+  void furnacePath() {
     const double otherAlbedo = c.fresh(0.3, 0.8), otherEmission = c.fresh(0.5, 2.0);
     const std::vector<glm::vec4> box{four(emission, albedo, survival)};
     const double reference = emission / (1.0 - albedo);
@@ -178,7 +172,7 @@ void check(Checks& c) {
         c.mean("each path's radiance by its reflections", {.probe = 10, .inputs = box, .expected = 1.0});
   }
   // Task 5: standardError of a mean.
-  if (c.task(5)) {
+  void standardError() {
     const auto of = [](double (*value)(double mean, double meanSquare, double n)) {
       return [=](Point p) { return glm::dvec4(value(double(p[0].x) / p[0].z, double(p[0].y) / p[0].z, p[0].z)); };
     };
@@ -204,7 +198,7 @@ void check(Checks& c) {
                  of([](double, double q, double n) { return std::sqrt(q / (n - 1.0)); })}}});
   }
   // Task 6: the floor close below a lamp, using tasks 1, 2 and 5.
-  if (c.task(6)) {
+  void together() {
     const std::vector<glm::vec4> lamp{four(side, height, albedo), four(away)};
     c.mean("both strategies together", {.probe = 12, .inputs = lamp, .expected = light}) &&
         c.picture("floor", {.probe = 13,
@@ -240,11 +234,28 @@ void check(Checks& c) {
       time.reference.emplace_back(p.x, time.mine.back().y * std::sqrt(time.mine.back().x / p.x));
     c.curve(time);
   }
-  // Numbers that the README quotes.
-  c.figure("samples", 64.0 * std::pow(error / wanted, 2.0));
-  c.figure("bounces", survival / (1.0 - survival));
-  c.figure("furnace", emission / (1.0 - albedo));
-}
+
+  void run() {
+    // The README's questions, with the results of common mistakes.
+    c.answer("samples", 64.0 * std::pow(error / wanted, 2.0), 0.02,
+             {{{"linear", "the error falls with the square root of the samples"}, 64.0 * error / wanted}});
+    c.answer(
+        "bounces", survival / (1.0 - survival), 0.005,
+        {{{"one-off", "the mean of a geometric distribution that begins at 0, not at 1"}, 1.0 / (1.0 - survival)}});
+    c.answer("furnace", emission / (1.0 - albedo), 0.005,
+             {{{"survival-counts", "survival changes the noise, not the mean"}, emission / (1.0 - albedo * survival)}});
+    if (c.task(1)) misWeight();
+    if (c.task(2)) lampSample();
+    if (c.task(3)) roulette();
+    if (c.task(4)) furnacePath();
+    if (c.task(5)) standardError();
+    if (c.task(6)) together();
+    // Numbers that the README quotes.
+    c.figure("samples", 64.0 * std::pow(error / wanted, 2.0));
+    c.figure("bounces", survival / (1.0 - survival));
+    c.figure("furnace", emission / (1.0 - albedo));
+  }
+};
 
 }  // namespace
 
@@ -259,6 +270,6 @@ const Lab kPathsLab{7,
                      {5, "standardError", 10, {}},
                      {6, "together: the floor close below a lamp", 10, {1, 2, 5}}},
                     15,
-                    check};
+                    [](Checks& c) { PathsChecks{c}.run(); }};
 
 }  // namespace lucerna::demo::labs

@@ -77,18 +77,14 @@ std::vector<glm::dvec4> stepped(const std::vector<glm::dvec4>& grid) {
   return next;
 }
 
-void check(Checks& c) {
+struct PropagationChecks {
+  Checks& c;
   const double flux = c.yours("flux", 0.5, 4.0), cell = c.yours("cell", 0.3, 1.2),
                steps = c.yours("steps", 3.0, 9.0, 0);
   const double kept = bandOneKept();
-  // The README's questions, with the results of common mistakes.
-  c.answer("injected", flux / (2.0 * std::sqrt(kPi)), 0.005,
-           {{{"lost-pi", "1 / pi is missing: a Lambertian surface has the intensity flux / pi * cos"}, flux * kLobe0}});
-  c.answer("band 1", std::pow(kept, steps), 0.02, {{{"one-step", "that is one step"}, kept}});
-  c.answer("reach", steps * cell, 0.005, {});
 
   // Task 1: injectionCell: half a cell off the surface.
-  if (c.task(1)) {
+  void injectionCell() {
     const auto of = [](double shift, double (*whole)(double)) {
       return [=](Point p) {
         const glm::dvec3 q =
@@ -126,7 +122,7 @@ void check(Checks& c) {
               }}}});
   }
   // Task 2: injectedLight: coefficients of the intensity.
-  if (c.task(2)) {
+  void injectedLight() {
     const auto of = [](double l0, double l1) {
       return [=](Point p) { return double(p[0].w) * joined(l0, l1 * glm::dvec3(p[0])); };
     };
@@ -146,7 +142,7 @@ void check(Checks& c) {
                  [](Point p) { return joined(kLobe0, kLobe1 * glm::dvec3(p[0])) / kPi; }}}});
   }
   // Task 3: fluxInto: through a face.
-  if (c.task(3)) {
+  void fluxInto() {
     const auto of = [](double sign, bool clamped, bool solid) {
       return [=](Point p) {
         const double value = glm::dot(glm::dvec4(p[0]), joined(kY0, sign * kY1 * glm::dvec3(p[1])));
@@ -184,7 +180,7 @@ void check(Checks& c) {
                 .mistakes = {{{"no-clamp", "negative intensities are not clamped"}, flux}}});
   }
   // Task 4: propagated: the light that a cell receives from the neighbour behind it.
-  if (c.task(4)) {
+  void propagated() {
     const auto of = [](Kernel kernel) {
       return
           [=](Point p) { return kernel.step(glm::dvec4(p[0]), glm::dvec3(p[1]), glm::dvec3(p[2]), glm::dvec3(p[3])); };
@@ -225,7 +221,7 @@ void check(Checks& c) {
                     [](Random& r, std::span<glm::vec4> p) {
                       p[0] = glm::vec4(joined(r.uniform(0.8, 1.0), 0.25 * r.direction()));
                     },
-                .reference = [kept](Point p) { return glm::dvec4(1.0, kept, kept, kept) * glm::dvec4(p[0]); },
+                .reference = [this](Point p) { return glm::dvec4(1.0, kept, kept, kept) * glm::dvec4(p[0]); },
                 .tolerance = 1e-5});
     // The grid loses direction: band 1 of uniform light, step by step.
     Curve curve{"What is left of band 1 after steps", "steps", "share", {}, {}};
@@ -238,7 +234,7 @@ void check(Checks& c) {
     c.curve(curve);
   }
   // Task 5: irradianceAt: the light that a surface stops.
-  if (c.task(5)) {
+  void irradianceAt() {
     const auto of = [](Kernel kernel, double sign, bool area) {
       return [=](Point p) {
         return glm::dvec4(kernel.irradiance(glm::dvec4(p[0]), sign * glm::dvec3(p[1]), area ? double(p[1].w) : 1.0));
@@ -263,7 +259,7 @@ void check(Checks& c) {
                           }}}});
   }
   // Task 6: two lights in a grid, against the twin.
-  if (c.task(6)) {
+  void together() {
     // Two lights on the floor of a grid, eight steps summed: a slice through them.
     std::vector<glm::dvec4> grid(static_cast<std::size_t>(kGrid.x * kGrid.y * kGrid.z), glm::dvec4(0.0));
     const glm::ivec3 first(static_cast<int>(c.parameter("x1", 1.0, 4.0, 0)), 0, 4),
@@ -291,18 +287,33 @@ void check(Checks& c) {
                           "band 0; the reference is the twin in double precision"},
               pixels);
   }
-  // Numbers that the README quotes.
-  c.figure("injected", flux / (2.0 * std::sqrt(kPi)));
-  c.figure("band 1", std::pow(kept, steps));
-  c.figure("reach", steps * cell);
-  // A newly injected light, flux / pi (1/4 + cos/2), over the directions in which it is not negative (cos > -1/2).
-  const double clamped = 2.0 * (0.25 * 1.5 + 0.25 * (1.0 - 0.25));
-  c.figure("flux of the clamped lobe", clamped * flux);
-  c.figure("the same over the light's own flux", clamped);
-  c.figure("solid angle of the front face, sr", kFront, 5);
-  c.figure("solid angle of a side face, sr", kSide, 5);
-  c.figure("share of band 1 that a step keeps", kept, 8);
-}
+
+  void run() {
+    // The README's questions, with the results of common mistakes.
+    c.answer(
+        "injected", flux / (2.0 * std::sqrt(kPi)), 0.005,
+        {{{"lost-pi", "1 / pi is missing: a Lambertian surface has the intensity flux / pi * cos"}, flux * kLobe0}});
+    c.answer("band 1", std::pow(kept, steps), 0.02, {{{"one-step", "that is one step"}, kept}});
+    c.answer("reach", steps * cell, 0.005, {});
+    if (c.task(1)) injectionCell();
+    if (c.task(2)) injectedLight();
+    if (c.task(3)) fluxInto();
+    if (c.task(4)) propagated();
+    if (c.task(5)) irradianceAt();
+    if (c.task(6)) together();
+    // Numbers that the README quotes.
+    c.figure("injected", flux / (2.0 * std::sqrt(kPi)));
+    c.figure("band 1", std::pow(kept, steps));
+    c.figure("reach", steps * cell);
+    // A newly injected light, flux / pi (1/4 + cos/2), over the directions in which it is not negative (cos > -1/2).
+    const double clamped = 2.0 * (0.25 * 1.5 + 0.25 * (1.0 - 0.25));
+    c.figure("flux of the clamped lobe", clamped * flux);
+    c.figure("the same over the light's own flux", clamped);
+    c.figure("solid angle of the front face, sr", kFront, 5);
+    c.figure("solid angle of a side face, sr", kSide, 5);
+    c.figure("share of band 1 that a step keeps", kept, 8);
+  }
+};
 
 }  // namespace
 
@@ -317,6 +328,6 @@ const Lab kPropagationLab{4,
                            {5, "irradianceAt", 15, {3}},
                            {6, "together: two lights in a grid", 10, {4}}},
                           15,
-                          check};
+                          [](Checks& c) { PropagationChecks{c}.run(); }};
 
 }  // namespace lucerna::demo::labs

@@ -20,23 +20,16 @@ double fromFloor(double side, double gap, const glm::dvec3& x) {
   return polygonIrradiance(corners, x, {0, 0, 1});
 }
 
-void check(Checks& c) {
+struct ShadowsChecks {
+  Checks& c;
   const double side = c.yours("patch side", 0.8, 1.6), gap = c.yours("patch gap", 0.2, 0.6),
                albedo = c.yours("albedo", 0.4, 0.9), sun = c.yours("sun angle", 20.0, 65.0, 0),
                high = c.yours("point height", 0.4, 1.2);
   const double texel = c.yours("texel", 0.01, 0.1), cosine = std::cos(sun * kPi / 180.0);
   const double light = albedo * cosine / kPi * fromFloor(side, gap, {0.0, high, 0.0});
-  // The README's questions, with the results of common mistakes.
-  c.answer("bias", 0.5 * texel * std::tan(sun * kPi / 180.0), 0.005,
-           {{{"whole-texel", "half a texel, not a whole one"}, texel * std::tan(sun * kPi / 180.0)}});
-  c.answer("flux", albedo * side * side * cosine, 0.005,
-           {{{"double-cosine", "the cosine counts once: the patch catches side^2 cos of the sun's light"},
-             albedo * side * side * cosine * cosine},
-            {{"lost-cosine", "tilted to the sun the patch catches less"}, albedo * side * side}});
-  c.answer("light", light, 0.02, {});
 
   // Task 1: slopeBias: the change of depth over half a texel.
-  if (c.task(1)) {
+  void slopeBias() {
     const auto of = [](double (*value)(double cosine, double texel)) {
       return [=](Point p) {
         const double x = glm::dot(glm::dvec3(p[0]), glm::dvec3(p[1]));
@@ -74,7 +67,7 @@ void check(Checks& c) {
                  }}}});
   }
   // Task 2: filteredShadow: compared, then filtered.
-  if (c.task(2)) {
+  void filteredShadow() {
     const auto mixed = [](const glm::dvec4& v, double u, double w) {
       return (v.x * (1 - u) + v.y * u) * (1 - w) + (v.z * (1 - u) + v.w * u) * w;
     };
@@ -123,7 +116,7 @@ void check(Checks& c) {
                  }}}});
   }
   // Task 3: texelFlux: the flux that a texel of the map reflects.
-  if (c.task(3)) {
+  void texelFlux() {
     const auto of = [](double (*value)(double a, double e, double t, double x)) {
       return [=](Point p) { return glm::dvec4(value(p[0].x, p[0].y, p[0].z, p[0].w)); };
     };
@@ -148,7 +141,7 @@ void check(Checks& c) {
                  of([](double, double e, double t, double) { return e * t; })}}});
   }
   // Task 4: texelLight: light from a texel to a point.
-  if (c.task(4)) {
+  void texelLight() {
     const auto of = [](double (*value)(double cosP, double cosX, double d)) {
       return [=](Point p) {
         const glm::dvec3 way = glm::dvec3(p[0]) - glm::dvec3(p[2]), w = glm::normalize(way);
@@ -190,7 +183,7 @@ void check(Checks& c) {
 #undef PART
   }
   // Task 5: discSample: points of a disc.
-  if (c.task(5)) {
+  void discSample() {
     const auto of = [](double (*weight)(double xi, double r)) {
       return [=](Point p) {
         const double xi = p[0].x, a = 2.0 * kPi * p[0].y, r = p[0].z;
@@ -234,7 +227,7 @@ void check(Checks& c) {
     c.curve(curve);
   }
   // Task 6: a wall lit by the floor in front of it, using tasks 3 and 4.
-  if (c.task(6)) {
+  void together() {
     const std::vector<glm::vec4> scene{four(side, gap, albedo, cosine), four(0.0, high)};
     c.mean("light of a floor on a wall", {.probe = 7, .inputs = scene, .expected = light}) &&
         c.picture("wall", {.probe = 8,
@@ -248,11 +241,28 @@ void check(Checks& c) {
                            .caption = "A wall lit by a sunlit patch of the floor before it, 64 texels of the map a "
                                       "pixel; the reference is exact"});
   }
-  // Numbers that the README quotes.
-  c.figure("bias", 0.5 * texel * std::tan(sun * kPi / 180.0));
-  c.figure("flux", albedo * side * side * cosine);
-  c.figure("light", light);
-}
+
+  void run() {
+    // The README's questions, with the results of common mistakes.
+    c.answer("bias", 0.5 * texel * std::tan(sun * kPi / 180.0), 0.005,
+             {{{"whole-texel", "half a texel, not a whole one"}, texel * std::tan(sun * kPi / 180.0)}});
+    c.answer("flux", albedo * side * side * cosine, 0.005,
+             {{{"double-cosine", "the cosine counts once: the patch catches side^2 cos of the sun's light"},
+               albedo * side * side * cosine * cosine},
+              {{"lost-cosine", "tilted to the sun the patch catches less"}, albedo * side * side}});
+    c.answer("light", light, 0.02, {});
+    if (c.task(1)) slopeBias();
+    if (c.task(2)) filteredShadow();
+    if (c.task(3)) texelFlux();
+    if (c.task(4)) texelLight();
+    if (c.task(5)) discSample();
+    if (c.task(6)) together();
+    // Numbers that the README quotes.
+    c.figure("bias", 0.5 * texel * std::tan(sun * kPi / 180.0));
+    c.figure("flux", albedo * side * side * cosine);
+    c.figure("light", light);
+  }
+};
 
 }  // namespace
 
@@ -267,6 +277,6 @@ const Lab kShadowsLab{2,
                        {5, "discSample", 15, {}},
                        {6, "together: a floor lights a wall", 10, {3, 4}}},
                       15,
-                      check};
+                      [](Checks& c) { ShadowsChecks{c}.run(); }};
 
 }  // namespace lucerna::demo::labs

@@ -1,0 +1,69 @@
+// The parts of a material that formats share.
+// - Metallic-roughness (glTF 2.0, appendix B): diffuse = base (1 - metallic), specular = mix(0.04, base, metallic),
+//   Blinn-Phong exponent 2 / roughness^4 - 2 (alpha = roughness^2; B. Karis, "Specular BRDF Reference", 2013). Code
+//   that treats a material as a whole uses the mean of its pictures, which preserves a surface's total.
+// - Scattering in the path tracer (Material::bsdf; the real-time techniques do not read it): transmission above 0.5 is
+//   a dielectric of index 1.5, otherwise metallic above 0.5 a conductor of the base colour; alpha = roughness^2.
+//   Everything else is Lambertian.
+#include "scene/model_import.hpp"
+#include "scene/shininess.hpp"
+#include "scene/texture_mean.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace lucerna {
+
+float clampedNumber(float value, float low, float high, float fallback) {
+  return std::isfinite(value) ? std::clamp(value, low, high) : fallback;
+}
+
+Material colours(const aiMaterial& source, const glm::vec3& tint) {
+  Material material;
+  material.name = source.GetName().C_Str();
+  material.diffuse = colourOf(source, AI_MATKEY_COLOR_DIFFUSE).value_or(material.diffuse) * tint;
+  material.specular = colourOf(source, AI_MATKEY_COLOR_SPECULAR).value_or(material.specular);
+  material.emission =
+      colourOf(source, AI_MATKEY_COLOR_EMISSIVE, std::numeric_limits<float>::max()).value_or(material.emission);
+  material.shininess = clampedNumber(numberOf(source, AI_MATKEY_SHININESS).value_or(1.0f), 1.0f, 1e6f, 1.0f);
+  return material;
+}
+
+glm::vec3 setMetallicRoughness(Material& material, const aiMaterial& source, const glm::vec3& tint,
+                               const glm::vec3& map, float transmission) {
+  // glTF's picture: roughness in green, metallic in blue.
+  const float metallic =
+      clampedNumber(numberOf(source, AI_MATKEY_METALLIC_FACTOR).value_or(0.0f) * map.z, 0.0f, 1.0f, 0.0f);
+  const float roughness =
+      clampedNumber(numberOf(source, AI_MATKEY_ROUGHNESS_FACTOR).value_or(1.0f) * map.y, 0.0f, 1.0f, 1.0f);
+  const std::optional<glm::vec3> given = colourOf(source, AI_MATKEY_BASE_COLOR);
+  const glm::vec3 base = given ? *given * tint : material.diffuse;
+  material.diffuse = base * (1.0f - metallic);
+  material.specular = glm::mix(glm::vec3(0.04f), base, metallic);
+  material.roughness = roughness * roughness;
+  material.shininess = shininessOf(material.roughness);
+  if (transmission > 0.5f) material.bsdf = Bsdf::dielectric;
+  else if (metallic > 0.5f) material.bsdf = Bsdf::conductor;
+  return base;
+}
+
+void setEmission(Material& material, const aiMaterial& source, TextureLoader& textures, float strength) {
+  if (material.emission == glm::vec3(0.0f)) return;
+  material.emissionScale = material.emission * clampedNumber(strength, 0.0f, 1e30f, 1.0f);
+  material.emissionTexture =
+      textures.optional(pictureOf(source, {aiTextureType_EMISSIVE, aiTextureType_EMISSION_COLOR}));
+  material.emission = material.emissionScale;
+  if (material.emissionTexture >= 0) material.emission *= glm::vec3(meanColour(textures[material.emissionTexture]));
+}
+
+void setAlbedoAndMask(Material& material, const aiMaterial& source, TextureLoader& textures) {
+  material.diffuseTexture = textures.albedo(pictureOf(source, {aiTextureType_DIFFUSE, aiTextureType_BASE_COLOR}));
+  material.alphaTexture = textures.optional(pictureOf(source, {aiTextureType_OPACITY}));
+  // A colour picture named as its own mask means its alpha channel; without one it masks nothing.
+  if (material.alphaTexture >= 0 && material.alphaTexture == material.diffuseTexture) material.alphaTexture = -1;
+  material.alphaMasked =
+      material.alphaTexture >= 0 || (material.diffuseTexture >= 0 && textures[material.diffuseTexture].hasAlpha);
+}
+
+}  // namespace lucerna

@@ -1,0 +1,99 @@
+// What readers of model files append to a scene (no GL; private to engine/scene). Nothing here depends on the library
+// that read the file.
+#pragma once
+
+#include "scene/scene.hpp"
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace lucerna {
+
+inline bool isFinite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+/// File names as Windows exporters write them.
+std::string withForwardSlashes(std::string path);
+
+float clampedNumber(float value, float low, float high, float fallback);
+
+/// Mean over all texels, encoded values in 0..1.
+glm::vec3 meanValue(const Bitmap& bitmap);
+
+/// Reads every picture once; a picture that cannot be read is one warning. An empty name: no picture.
+class TextureLoader {
+ public:
+  /// The picture of that name inside the model file, if there is one; `label` names it in messages.
+  using Embedded = std::function<std::optional<Bitmap>(const std::string& name, const std::filesystem::path& label)>;
+
+  TextureLoader(Scene& scene, Embedded embedded) : scene_(scene), embedded_(std::move(embedded)) {}
+
+  /// Index of an albedo map; the shared checker if it cannot be read; -1 if the material has none.
+  int albedo(const std::string& name);
+  /// Index of a picture that only refines the material: -1 also if it cannot be read.
+  int optional(const std::string& name);
+  /// The mean of a picture that is not kept, encoded values in 0..1; 1 without a picture.
+  glm::vec3 mean(const std::string& name);
+  /// An albedo map whose alpha is shifted so that `threshold` becomes 0.5, the cut-off of masks. The cut stays at the
+  /// same texture coordinates, since adding a constant commutes with interpolation.
+  int withThreshold(int texture, double threshold);
+
+  const Bitmap& operator[](int texture) const { return scene_.textures[static_cast<std::size_t>(texture)].bitmap; }
+
+ private:
+  int load(const std::string& name);
+  std::optional<Texture> read(const std::string& name);
+  std::filesystem::path resolve(const std::string& name) const;
+  int checker();
+
+  Scene& scene_;
+  Embedded embedded_;
+  std::map<std::string, int> indices_;
+  std::map<std::pair<int, double>, int> moved_;
+  std::vector<std::string> unreadable_;
+  int checker_ = -1;
+};
+
+/// A mesh as its file has it. Without normals or texture coordinates these are empty.
+struct MeshData {
+  std::string name;
+  std::vector<glm::vec3> positions, normals;
+  std::vector<glm::vec2> texCoords;  ///< (0, 0) is the lower left corner of a picture
+  std::vector<std::array<unsigned, 3>> triangles;
+};
+
+/// Appends one mesh as placed by one node.
+void appendMesh(Scene& scene, const MeshData& source, const glm::dmat4& worldFromNode, int material);
+
+/// A light as its file has it, in world space.
+struct ModelLight {
+  enum class Kind { directional, point, spot, other };
+  std::string name;
+  Kind kind = Kind::other;
+  glm::dvec3 position{0.0}, direction{0.0};
+  glm::vec3 colour{0.0f};
+  float attenuation = 1.0f;  ///< quadratic
+  double innerAngle = 0.0, outerAngle = 0.0;  ///< of a spot, from its axis
+};
+
+void appendLights(Scene& scene, std::span<const ModelLight> lights);
+
+/// Cameras whose directions need not be unit or perpendicular.
+void appendCameras(Scene& scene, std::span<const Camera> cameras);
+
+/// What a reader returns once it has appended the meshes and their materials.
+struct ModelViews {
+  std::vector<ModelLight> lights;
+  std::vector<Camera> cameras;
+};
+
+/// glTF. `content`: of scene.file.
+ModelViews readGltf(Scene& scene, std::span<const std::uint8_t> content);
+
+}  // namespace lucerna

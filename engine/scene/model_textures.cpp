@@ -1,0 +1,110 @@
+// Pictures of models: each is read once, from beside the model or from inside of it.
+#include "scene/model_parts.hpp"
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lucerna {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+Bitmap checkerBitmap() {
+  constexpr int kSize = 64, kSquare = 8;
+  Bitmap bitmap{kSize, kSize, std::vector<std::uint8_t>(4 * kSize * kSize, 255), false};
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x) {
+      const std::uint8_t grey = (x / kSquare + y / kSquare) % 2 ? 200 : 90;
+      std::fill_n(bitmap.rgba.begin() + 4 * (y * kSize + x), 3, grey);
+    }
+  return bitmap;
+}
+
+}  // namespace
+
+std::string withForwardSlashes(std::string path) {
+  std::replace(path.begin(), path.end(), '\\', '/');
+  return path;
+}
+
+glm::vec3 meanValue(const Bitmap& bitmap) {
+  glm::dvec3 sum(0.0);
+  for (std::size_t i = 0; i < bitmap.rgba.size(); i += 4)
+    sum += glm::dvec3(bitmap.rgba[i], bitmap.rgba[i + 1], bitmap.rgba[i + 2]);
+  return glm::vec3(sum / (255.0 * static_cast<double>(bitmap.rgba.size() / 4)));
+}
+
+int TextureLoader::albedo(const std::string& name) {
+  if (name.empty()) return -1;
+  const int index = load(name);
+  return index >= 0 ? index : checker();
+}
+
+int TextureLoader::optional(const std::string& name) { return name.empty() ? -1 : load(name); }
+
+glm::vec3 TextureLoader::mean(const std::string& name) {
+  if (name.empty()) return glm::vec3(1.0f);
+  const std::optional<Texture> texture = read(name);
+  return texture ? meanValue(texture->bitmap) : glm::vec3(1.0f);
+}
+
+int TextureLoader::withThreshold(int texture, double threshold) {
+  const auto [known, isNew] = moved_.try_emplace({texture, threshold}, static_cast<int>(scene_.textures.size()));
+  if (!isNew) return known->second;
+  Texture copy = scene_.textures[static_cast<std::size_t>(texture)];
+  const double shift = 255.0 * (0.5 - threshold);
+  for (std::size_t i = 3; i < copy.bitmap.rgba.size(); i += 4)
+    copy.bitmap.rgba[i] = static_cast<std::uint8_t>(std::clamp(std::lround(copy.bitmap.rgba[i] + shift), 0l, 255l));
+  scene_.textures.push_back(std::move(copy));
+  return known->second;
+}
+
+int TextureLoader::load(const std::string& name) {
+  const auto known = indices_.find(name);
+  if (known != indices_.end()) return known->second;
+  int index = -1;
+  if (std::optional<Texture> texture = read(name)) {
+    index = static_cast<int>(scene_.textures.size());
+    scene_.textures.push_back(std::move(*texture));
+  }
+  indices_[name] = index;
+  return index;
+}
+
+std::optional<Texture> TextureLoader::read(const std::string& name) {
+  try {
+    const fs::path label = scene_.file.string() + ":" + name;
+    if (std::optional<Bitmap> embedded = embedded_(name, label)) return Texture{label, std::move(*embedded)};
+    const fs::path file = resolve(name);
+    return Texture{file, readBitmap(file)};
+  } catch (const Error& e) {
+    if (std::find(unreadable_.begin(), unreadable_.end(), name) == unreadable_.end()) {
+      unreadable_.push_back(name);
+      logWarning("texture {} (using a default)", e.what());
+    }
+    return std::nullopt;
+  }
+}
+
+/// Relative to the model; if the path is from another machine, the bare file name next to the model.
+fs::path TextureLoader::resolve(const std::string& name) const {
+  const fs::path folder = scene_.file.parent_path();
+  const fs::path path = (folder / withForwardSlashes(name)).lexically_normal();
+  const fs::path bare = folder / path.filename();
+  std::error_code error;
+  return !fs::exists(path, error) && fs::exists(bare, error) ? bare : path;
+}
+
+int TextureLoader::checker() {
+  if (checker_ < 0) {
+    checker_ = static_cast<int>(scene_.textures.size());
+    scene_.textures.push_back({"(default checker)", checkerBitmap()});
+  }
+  return checker_;
+}
+
+}  // namespace lucerna

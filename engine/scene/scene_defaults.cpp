@@ -1,0 +1,125 @@
+// What files leave out.
+// - No light: a sun, over the shoulder of a view that we chose, otherwise slanted to suit courtyards and halls; and its
+//   clear sky (set in loadScene, as the sun may still be turned).
+// - No camera: the first key of keyFrames/<stem>.txt if the repository has one, otherwise a view from outside that
+//   frames the bounding sphere.
+// - Lamps far too weak or strong for an exposure of 1, since their units are arbitrary: another exposure, with a
+//   warning.
+#include "scene/scene_file.hpp"
+
+#include "base/angles.hpp"
+#include "base/data.hpp"
+#include "base/log.hpp"
+#include "scene/clear_sky.hpp"
+#include "scene/key_frames.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lucerna {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr double kDefaultFov = 50.0 * kPi / 180.0;
+
+/// Slanted, so that walls are lit too. In Crytek Sponza it reaches a quarter of the court's floor and the curtains on
+/// +z.
+const glm::dvec3 kDefaultSunDirection = glm::normalize(glm::dvec3(0.12, -1.0, 0.2));
+/// For the default view from outside: over its right shoulder, so that all visible sides of a box are lit, and also a
+/// sheet that faces +z.
+const glm::dvec3 kSunOverShoulder = glm::normalize(glm::dvec3(-0.3, -1.0, -0.6));
+const glm::vec3 kDefaultSunIrradiance(10.0f, 9.6f, 9.0f);
+/// Match that sun and its sky, some 12 W/unit^2: white stands at 0.4 * 0.8 * 12 / pi = 1.2 before the tone curve.
+const float kExposureOutside = 0.4f, kExposureInside = 3.0f;
+
+/// Whether the bounding sphere of the bounds intersects the cone around the view's corners, for a 16:9 picture.
+bool seesAnything(const Camera& camera, const Bounds& bounds) {
+  const glm::dvec3 away = bounds.centre() - camera.position;
+  const double distance = glm::length(away), radius = 0.5 * glm::length(bounds.extent());
+  if (distance <= radius) return true;
+  const double corner = std::atan(std::tan(0.5 * camera.verticalFov) * std::hypot(1.0, 16.0 / 9.0));
+  return std::acos(std::clamp(glm::dot(away, camera.direction) / distance, -1.0, 1.0)) - std::asin(radius / distance) <
+         corner;
+}
+
+Camera outsideView(const Bounds& bounds) {
+  Camera camera;
+  camera.name = "default";
+  camera.verticalFov = kDefaultFov;
+  camera.direction = -glm::normalize(glm::dvec3(0.5, 0.35, 1.0));
+  const double radius = 0.5 * glm::length(bounds.extent());
+  camera.position = bounds.centre() - camera.direction * (radius / std::sin(0.5 * kDefaultFov));
+  camera.up = glm::normalize(glm::dvec3(0.0, 1.0, 0.0) - camera.direction.y * camera.direction);
+  return camera;
+}
+
+}  // namespace
+
+void setKeyFrames(Scene& scene, const fs::path& file) {
+  const std::vector<KeyFrame> keys = readKeyFrames(file);
+  scene.keyFrames = file;
+  if (!scene.cameras.empty()) return;
+  Camera camera = Spline(keys).view(0);
+  camera.name = "default";
+  scene.cameras.push_back(std::move(camera));
+}
+
+void setDefaultSun(Scene& scene) {
+  if (scene.sun || !scene.spots.empty() || !scene.points.empty()) return;
+  scene.sun = DirectionalLight{kDefaultSunDirection, kDefaultSunIrradiance};
+  scene.defaultSun = true;
+  scene.defaultExposure = true;
+}
+
+void setDefaultView(Scene& scene) {
+  if (const auto data = findDataFolder()) {
+    const fs::path walk = *data / "keyFrames" / (scene.name + ".txt");
+    if (fs::exists(walk)) setKeyFrames(scene, walk);
+  }
+  // Cameras that animations would have turned, or that were read with the wrong handedness, may see nothing: then they
+  // do not come first.
+  const bool blind = !scene.cameras.empty() && !seesAnything(scene.cameras.front(), scene.bounds);
+  if (blind)
+    logWarning("{}: camera '{}' sees nothing of the scene; using the default view from outside", scene.file.string(),
+               scene.cameras.front().name);
+  if (!scene.cameras.empty() && !blind) return;
+  scene.cameras.insert(scene.cameras.begin(), outsideView(scene.bounds));
+  if (scene.defaultSun) scene.sun->direction = kSunOverShoulder;
+}
+
+void useChosenView(Scene& scene) {
+  if (scene.defaultSun) scene.sun->direction = kDefaultSunDirection;
+}
+
+void setDefaultExposure(Scene& scene, const Camera& camera) {
+  if (!scene.defaultExposure) return;
+  const glm::bvec3 above = glm::greaterThan(camera.position, scene.bounds.min),
+                   below = glm::lessThan(camera.position, scene.bounds.max);
+  scene.exposure = glm::all(above) && glm::all(below) ? kExposureInside : kExposureOutside;
+}
+
+void setDefaultSky(Scene& scene) {
+  if (scene.defaultSun) scene.environment = Environment{glm::vec3(1.0f), clearSkyPicture({}, *scene.sun), 0.0};
+}
+
+void setExposureForLamps(Scene& scene) {
+  if (scene.defaultSun) return;
+  const auto strongest = [](const glm::vec3& v) { return static_cast<double>(std::max({v.x, v.y, v.z})); };
+  const double radius = 0.5 * glm::length(scene.bounds.extent());
+  const auto lamp = [&](const glm::dvec3& position, const glm::vec3& intensity) {
+    const double distance = std::max(glm::length(position - scene.bounds.centre()), radius);
+    return strongest(intensity) / (distance * distance);
+  };
+  double irradiance = scene.sun ? strongest(scene.sun->irradiance) : 0.0;
+  for (const SpotLight& light : scene.spots) irradiance += lamp(light.position, light.intensity);
+  for (const PointLight& light : scene.points) irradiance += lamp(light.position, light.intensity);
+  if (!(irradiance > 1e-30 && irradiance < 1e30) || (irradiance > 0.3 && irradiance < 30.0)) return;
+  scene.exposure = static_cast<float>(3.0 / irradiance);
+  logWarning(
+      "{}: its lamps give an irradiance of about {:.2g}, so that pictures would be {} at exposure 1; {:.2g} is taken",
+      scene.file.string(), irradiance, irradiance < 1.0 ? "black" : "white", scene.exposure);
+}
+
+}  // namespace lucerna

@@ -1,0 +1,245 @@
+// A path's flight through a medium: how far it goes, what it gathers, and how it continues from its collisions. Include
+// crossing.glsl before this file.
+//
+// Flags: HETEROGENEOUS, VOLUME_EMISSION, WALKS (dense media have clearance grids); deviations DISTANCE_WITHOUT_PDF,
+// BOOSTED_INTERACTION.
+#include "lib/angle.glsl"
+#include "lib/clamped_int.glsl"
+#include "pathtracer/collision.glsl"
+
+const uint kPurposeFlight = kFreePurpose;
+
+#if NEXT_EVENT
+// Light from a point lamp, scattered once on a flight of length `s` from the path's origin. The scattering position is
+// drawn in proportion to 1 / r^2 [KullaFajardo2012], on the flight rather than on the whole ray: the probability of
+// flying that far is the transmittance, except for the channels' differences.
+void addPointLight(inout Path path, MediumRecord medium, vec3 q, float s, PathNumbers numbers) {
+  uvec4 words = randomWords(numbers, path.event, kPurposePick);
+  if (!counts(path.scatterings + 1u) || all(equal(medium.albedo, vec3(0.0))) || !isPointLike(words)) return;
+  LightSample light = LightSample(vec3(0.0), 0.0, vec3(0.0), vec3(0.0), false);
+  vec2 xi = randomPair(numbers, path.event, kPurposeLight);
+  if (!sampleLight(path.origin, xi, words, light)) {
+    // A spot may not light the origin; its position is needed all the same.
+    light.end = lights[pick(words)].a;
+  }
+  vec3 to = light.end - path.origin;
+  float a = -dot(to, path.direction);
+  vec3 beside = to + a * path.direction;
+  float h = max(length(beside), max(1e-4 * min(s, length(to)), 1e-30)), b = a + s;
+  float angle = angleOf((b - a) * h, h * h + a * b);
+  if (!(angle > 0.0)) return;
+  float sine = sin(xi.x * angle), cosine = cos(xi.x * angle);
+  float x = clamp(sine * (h * h + a * a) / (h * cosine - a * sine), 0.0, s);
+  float density = h / (angle * (h * h + (x + a) * (x + a)));
+  vec3 place = path.origin + x * path.direction;
+  if (!sampleLight(place, xi, words, light)) return;
+  vec3 contribution = medium.albedo * medium.extinction * passageWeight(medium, q, x) *
+                      phaseValue(medium, path.direction, light.direction) * light.value / density;
+  if (any(greaterThan(contribution, vec3(0.0))))
+    queueShadowRay(path, contribution, place, light, kNoHit, numbers);
+}
+#endif
+
+#if HETEROGENEOUS
+const uint kMostTracked = 64u;  // tentative collisions of a flight before it is interrupted
+
+// Delta tracking over the free part of the ray. After a number of tentative collisions the flight is interrupted and
+// continues with the next ray: exponential flights have no memory, and no submission is held up.
+int trackDensity(inout Path path, MediumRecord medium, float distance, PathNumbers numbers, out bool collided) {
+  collided = false;
+  DensityMarch march;
+  uvec4 words = randomWords(numbers, path.event, kPurposeFlight);
+  float bound = 0.0, t = 0.0;
+  uint tries = 0u;
+  bool goesOn = densityMarchStart(gridOf(medium), path.origin, path.direction, distance, march);
+  int left = densityMostBlocks(gridOf(medium));
+  for (; left > 0 && goesOn && densityMarchNext(gridOf(medium), march, bound); --left) {  // ends: as many as blocks
+    ++loopIterations;
+    float rate = medium.majorant * bound;
+    if (!(rate > 0.0)) continue;
+    t = march.near;
+    for (uint step = 0u; step < kMostTracked; ++step) {
+      ++loopIterations;
+      words = pcg4d(words);
+      t += exponentialSample(words.x) / rate;
+      if (t >= march.far) break;
+      float density = densityAt(gridOf(medium), march.origin + t * march.direction);
+      vec3 share = min(medium.extinction * (density / rate), vec3(1.0));
+      vec3 q = channelProbabilities(path.throughput);
+      float real = dot(q, share);
+#if VOLUME_EMISSION
+      if (counts(path.scatterings)) {
+        vec3 emitted = medium.emission * (density / rate);
+        addLight(path, emitted);
+#if ASKED
+        noteLight(path, numbers, lightOf(path, emitted), PATH_ASKED_MEDIUM, 0u, path.origin,
+                  path.origin + t * path.direction, false);
+#endif
+      }
+#endif
+      collided = unitFloat(words.y) < real;
+      if (medium.greyExtinction != 0)
+        path.throughput *= collided ? medium.albedo : vec3(1.0);
+      else
+        path.throughput *= collided ? medium.albedo * share / real : (1.0 - share) / (1.0 - real);
+      goesOn = !collided && ++tries < kMostTracked;
+      if (!goesOn) break;
+    }
+  }
+  vec3 throughput = path.throughput;
+  forgetAddresses();
+  take(path);
+  path.throughput = throughput;
+  bool arrives = !collided && tries < kMostTracked;
+  if (!arrives) path.origin += t * path.direction;
+  if (!arrives && !collided) {
+    path.travelled += t;
+    path.head = 0.0;
+    ++path.event;
+  }
+  return arrives ? kFlightArrives : kScattered;
+}
+#endif
+
+#if DISTANCE_WITHOUT_PDF || BOOSTED_INTERACTION
+// Probability of an interaction [VPT2024, algorithm 4]: the largest albedo, which the published text raises to at least
+// a half.
+float interactionProbability(MediumRecord medium) {
+  float w = max(medium.albedo.r, max(medium.albedo.g, medium.albedo.b));
+#if BOOSTED_INTERACTION
+  if (w > 0.0) w = max(w, 0.5);
+#endif
+  return w;
+}
+#endif
+
+// How far the ray may go before it collides; negative if the collision lies before its origin. With a density grid the
+// distance is found once the ray's end is known.
+float beginFlight(Path path, MediumRecord medium, PathNumbers numbers) {
+  if (medium.grid >= 0) return kFar;
+  uvec2 words = randomWordPair(numbers, path.event, kPurposeFlight);
+#if DISTANCE_WITHOUT_PDF
+  // [VPT2024, algorithm 4]: with the smallest extinction, and only with the probability of an interaction.
+  float least = min(medium.extinction.r, min(medium.extinction.g, medium.extinction.b));
+  if (unitFloat(words.y) >= interactionProbability(medium) || !(least > 0.0)) return kFar;
+  return max(min(exponentialSample(words.x) / least, kFar) - path.head, 0.0);
+#endif
+  return flightDistance(medium, pickChannel(channelProbabilities(path.throughput), unitFloat(words.y)), words.x) -
+         path.head;
+}
+
+// How far beyond a collision to look for a surface. If one is this near, the next ray might miss it by the rounding
+// error of its distance, which is that of the triangles' coordinates. Collisions keep this distance from surfaces, also
+// at grazing angles.
+float flightMargin() { return sceneMagnitude() * kBeside * 64.0; }
+
+// Contribution of a flight of the given length, and its effect on the throughput.
+void weighFlight(inout Path path, MediumRecord medium, vec3 q, float distance, bool arrives, PathNumbers numbers) {
+#if VOLUME_EMISSION
+  if (counts(path.scatterings) && distance < 0.5 * kFar) {
+    // Emission along the flight, estimated at one point of it. Where collisions are rare this has hardly any noise.
+    float x = distance * unitFloat(randomWords(numbers, path.event, kPurposeFlight).z);
+    vec3 emitted = distance * medium.emission * passageWeight(medium, q, x);
+    addLight(path, emitted);
+#if ASKED
+    noteLight(path, numbers, lightOf(path, emitted), PATH_ASKED_MEDIUM, 0u, path.origin,
+              path.origin + x * path.direction, false);
+#endif
+  }
+#endif
+#if DISTANCE_WITHOUT_PDF
+  path.throughput *= exp(-medium.extinction * distance);  // neither the scattering coefficient nor a density
+#else
+  path.throughput *= arrives ? passageWeight(medium, q, distance) : scatteringWeight(medium, q, distance);
+#if BOOSTED_INTERACTION
+  float albedo = max(medium.albedo.r, max(medium.albedo.g, medium.albedo.b));
+  if (!arrives) path.throughput *= interactionProbability(medium) / max(albedo, 1e-30);  // raised, and not divided out
+#endif
+#endif
+}
+
+#if WALKS
+// distances from cell centres to the scene's nearest triangle
+layout(binding = 3) uniform samplerBuffer clearances;
+const uint kWalkSteps = 64u;
+
+// Moves from collision to collision as long as `flight`, the last one drawn, ends before it could meet any triangle; no
+// ray is traced for these. Every random number and every sum is that of a path that traces them all. There is no walk
+// where a lamp might be sampled. False: the path ends.
+bool walk(inout Path path, MediumRecord medium, inout float flight, PathNumbers numbers) {
+  int rank = topRank(path.inside);
+  if (rank < 0 || (NEXT_EVENT != 0 && lampsReach(path))) return true;
+  InteriorRecord interior = interiors[rank];
+  if (interior.clearance < 0) return true;
+  ivec3 last = interior.size.xyz - 1;
+  float margin = 2.0 * flightMargin();
+  if (flight < 0.0) return true;
+  for (uint step = 0u; step < kWalkSteps; ++step) {
+    ivec3 cell = clampedInt((path.origin - interior.min) / interior.cell, ivec3(0), last);
+    float radius =
+        texelFetch(clearances, interior.clearance + cell.x + interior.size.x * (cell.y + interior.size.y * cell.z)).x;
+    if (!(flight + margin < radius - length(path.origin - interior.min - (vec3(cell) + 0.5) * interior.cell)))
+      return true;
+    ++loopIterations;
+    numbers.pixel += hiddenZero();
+    numbers.sampleIndex += hiddenZero();
+    weighFlight(path, medium, channelProbabilities(path.throughput), path.head + flight, false, numbers);
+    path.origin += flight * path.direction;
+    if (scatterInMedium(path, medium, numbers, false) != kScattered) return false;
+    flight = beginFlight(path, medium, numbers);
+  }
+  return true;
+}
+#endif
+
+bool arrivesAt(Hit hit, float flight) { return hit.triangle != kNoHit ? hit.t <= flight : flight > 0.5 * kFar; }
+
+// Length of the flight before the hit; it includes the gap behind the ray's start.
+float flownDistance(Path path, Hit hit, float flight) {
+  return max(path.head + (hit.triangle != kNoHit && arrivesAt(hit, flight) ? hit.t : flight), 0.0);
+}
+
+// Handles what happens on the way to `hit`, the first hit within `flight`.
+int crossMedium(inout Path path, int index, float flight, Hit hit, PathNumbers numbers) {
+  vec3 inward = vec3(0.0);
+#if HETEROGENEOUS
+  if (mediumAt(index).grid >= 0) {
+    bool collided;
+    int became = trackDensity(path, mediumAt(index), hit.triangle != kNoHit ? hit.t : kFar, numbers, collided);
+    if (!collided) return became;
+  } else
+#endif
+  {
+    bool arrives = arrivesAt(hit, flight);
+    weighFlight(path, mediumAt(index), channelProbabilities(path.throughput), flownDistance(path, hit, flight), arrives,
+                numbers);
+    if (arrives) return kFlightArrives;
+    // Nearer to a face than a gap, the path continues from a gap beside it. The piece of flight along the face's normal
+    // that is thereby skipped or repeated is made up for in the next flight, as if it had begun where it should have.
+    // This matters where a gap is a sizeable part of a mean free path.
+    if (flight < 0.0) {
+      vec3 normal = normalOf(path.face);
+      inward = -flight * abs(dot(normal, path.direction)) * (dot(normal, path.direction) < 0.0 ? -normal : normal);
+    } else {
+      path.origin += flight * path.direction;
+      if (hit.triangle != kNoHit) {
+        Surface near = surfaceAt(hit.triangle, hit.barycentrics, path.direction);
+        float depth = (hit.t - flight) * -dot(near.geometricNormal, path.direction);
+        if (depth < gapAt(near)) {
+          path.origin = beside(near, near.geometricNormal);
+          path.face = hit.triangle;
+          inward = (gapAt(near) - depth) * near.geometricNormal;
+        }
+      }
+    }
+  }
+  int became = scatterInMedium(path, mediumAt(index), numbers, lampsReach(path));
+#if !FIXED_EPSILON  // published rays have no such correction
+  float shift = length(inward);
+  if (shift > 0.0) {
+    float cosine = dot(inward, path.direction) / shift;
+    path.head = shift / (abs(cosine) > 0.01 ? cosine : cosine < 0.0 ? -0.01 : 0.01);
+  }
+#endif
+  return became;
+}
