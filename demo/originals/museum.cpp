@@ -102,13 +102,13 @@ nav { columns: 3; font-size: 13px; margin-bottom: 1.5em; } nav a { display: bloc
 
 }  // namespace
 
-std::string museumHtml(const gl::Context& context, gl::ProgramLibrary& programs, bool small,
-                       const std::function<void(int, int)>& progress) {
+std::string museumHtml(const gl::Context& context, gl::ProgramLibrary& programs, std::span<const Room> rooms,
+                       bool small, const std::function<void(int, int)>& progress) {
   std::string index = "<nav>", body;
   int done = 0;
   std::map<std::string, Traced> sound;
-  for (const Room& room : museumRooms()) {
-    progress(done++, static_cast<int>(museumRooms().size()));
+  for (const Room& room : rooms) {
+    progress(done++, static_cast<int>(rooms.size()));
     const std::string technique = techniqueOf(room.deviation),
                       scene = technique == "path" ? sceneOf(room.deviation) : technique;
     const auto shown = [&](const std::string& deviation) {

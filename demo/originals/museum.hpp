@@ -25,11 +25,11 @@ struct Room {
 };
 std::span<const Room> museumRooms();
 
-/// One self-contained page. Each room has three pictures (correct, with the deviation, and their difference) of the
-/// Cornell box or, for the path tracer, of a scene in demo/labs/museum. Small: a quarter of the samples and
-/// a tenth of radiosity's patches.
-std::string museumHtml(const gl::Context& context, gl::ProgramLibrary& programs, bool small,
-                       const std::function<void(int done, int all)>& progress);
+/// One self-contained page of the rooms. Each has three pictures (correct, with the deviation, and their difference) of
+/// the Cornell box or, for the path tracer, of a scene in demo/labs/museum. Small: a quarter of the samples and a tenth
+/// of radiosity's patches.
+std::string museumHtml(const gl::Context& context, gl::ProgramLibrary& programs, std::span<const Room> rooms,
+                       bool small, const std::function<void(int done, int all)>& progress);
 
 /// The mystery: a deviation determined by the seed alone.
 struct Mystery {

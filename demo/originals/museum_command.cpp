@@ -10,6 +10,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <ranges>
+#include <span>
 
 namespace lucerna::demo {
 
@@ -20,19 +22,28 @@ namespace fs = std::filesystem;
 
 struct MuseumOptions {
   CommonOptions common;
-  std::string seed, answer, folder = ".", html = "museum.html";
+  std::string seed, answer, folder = ".", html = "museum.html", room;
   bool small = false;
 };
 
 int museum(const MuseumOptions& options) {
   options.common.apply();
+  std::span<const Room> rooms = museumRooms();
+  if (!options.room.empty()) {
+    const auto isIt = [&](const Room& room) { return options.room == room.deviation; };
+    const auto found = std::find_if(rooms.begin(), rooms.end(), isIt);
+    if (found == rooms.end())
+      throwBadInput("--room {}: expected a deviation, one of {}", options.room,
+                    fmt::join(rooms | std::views::transform(&Room::deviation), ", "));
+    rooms = {found, 1};
+  }
   const auto host = options.common.makeHost(false);
   const gl::Context context;
   gl::ProgramLibrary programs;
-  Progress progress("Rooms", static_cast<int>(museumRooms().size()), options.common.quiet);
-  writeFileAtomically(options.html,
-                      museumHtml(context, programs, options.small, [&](int done, int) { progress.update(done); }));
-  fmt::print("{}: {} rooms\n", options.html, museumRooms().size());
+  Progress progress("Rooms", static_cast<int>(rooms.size()), options.common.quiet);
+  const auto update = [&](int done, int) { progress.update(done); };
+  writeFileAtomically(options.html, museumHtml(context, programs, rooms, options.small, update));
+  fmt::print("{}: {} {}\n", options.html, rooms.size(), rooms.size() == 1 ? "room" : "rooms");
   return 0;
 }
 
@@ -98,6 +109,7 @@ void addMuseum(Subcommands& commands) {
       [options] { return museum(*options); });
   options->common.declare(museumApp);
   museumApp.addOption("-o,--output", options->html, "FILE.html").showDefault();
+  museumApp.addOption("--room", options->room, "name of one deviation, whose room alone is shown");
   museumApp.addFlag("--small", options->small, "fewer samples, patches and cells: seconds instead of half a minute");
 }
 

@@ -356,6 +356,20 @@ TEST(LabMuseum, EveryDeviationHasARoomAndATest) {
   EXPECT_EQ(html.find("://"), std::string::npos) << "the page stands by itself";  // no text of base64 has that
 }
 
+TEST(LabMuseum, ARoomIsShownAlone) {
+  TempFolder folder;
+  const std::string page = (folder / "room.html").string();
+  const RunResult made = RUN_LUCERNA("lab museum --small --room rsm.gather-weight -o " + page);
+  ASSERT_EQ(made.exitCode, 0) << made.err;
+  const std::string html = readFileText(page);
+  EXPECT_NE(html.find("<section id=\"rsm.gather-weight\">"), std::string::npos);
+  EXPECT_EQ(html.find("<section"), html.rfind("<section"));
+  const RunResult refused = RUN_LUCERNA("lab museum --room rsm.nothing -o " + (folder / "no.html").string());
+  EXPECT_EQ(refused.exitCode, 2);
+  EXPECT_NE(refused.err.find("rsm.gather-weight"), std::string::npos) << refused.err;
+  EXPECT_FALSE(std::filesystem::exists(folder / "no.html"));
+}
+
 // The answer follows from the seed; one candidate alone is right; the hidden one leaves a mark on the instruments.
 TEST(LabMystery, OneCandidateIsRightAndLeavesAMark) {
   TempFolder folder;

@@ -71,7 +71,7 @@ Camera viewFrom(const glm::dvec3& position, const glm::dvec3& direction, double 
   return camera;
 }
 
-class LightsGl : public test::GlTest {
+class LightsGl : public test::SharedProgramsTest {
  protected:
   static RenderSettings settings(std::string_view technique, glm::ivec2 size) {
     RenderSettings s;

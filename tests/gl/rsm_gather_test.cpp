@@ -23,7 +23,7 @@ double luminance(const glm::dvec3& c) { return (c.x + c.y + c.z) / 3.0; }
 
 // ---------------------------------------------------------------------------------------------------- points
 
-class RsmGatherOnGl : public test::GlTest {
+class RsmGatherOnGl : public test::SharedProgramsTest {
  protected:
   /// Irradiance at points, from a hand-made map, with the engine's shaders.
   std::vector<glm::dvec3> probe(const RsmMap& map, const RsmGather::Settings& settings,
@@ -211,7 +211,7 @@ Scene room(float scale = 1.0f) {
   return scene;
 }
 
-class RsmRendered : public test::GlTest {
+class RsmRendered : public test::SharedProgramsTest {
  protected:
   static RenderSettings settings() {
     RenderSettings s;

@@ -29,6 +29,11 @@ class GlTest : public ::testing::Test {
   }
 
   static gl::Context& context() { return *context_(); }
+  /// Of all suites of this process, made when it is first asked for.
+  static gl::ProgramLibrary& library() {
+    if (!library_()) library_() = std::make_unique<gl::ProgramLibrary>();
+    return *library_();
+  }
   static const gl::Capabilities& capabilities() { return context().capabilities(); }
   gl::ProgramLibrary& programs() { return programs_; }
 
@@ -38,6 +43,7 @@ class GlTest : public ::testing::Test {
   struct EndOfProgram : ::testing::EmptyTestEventListener {
     void OnTestProgramEnd(const ::testing::UnitTest&) override {
       gl::writeBarrierUses();
+      library_().reset();
       context_().reset();
       host().reset();
     }
@@ -50,21 +56,17 @@ class GlTest : public ::testing::Test {
     static std::unique_ptr<gl::Context> instance;
     return instance;
   }
+  static std::unique_ptr<gl::ProgramLibrary>& library_() {
+    static std::unique_ptr<gl::ProgramLibrary> instance;
+    return instance;
+  }
   gl::ProgramLibrary programs_;
 };
 
-/// Programs are compiled once a suite, for suites that make many objects of few kinds.
+/// Programs are compiled once a process, for suites that make many objects of few kinds.
 class SharedProgramsTest : public GlTest {
  protected:
-  static void SetUpTestSuite() {
-    GlTest::SetUpTestSuite();
-    library_ = std::make_unique<gl::ProgramLibrary>();
-  }
-  static void TearDownTestSuite() { library_.reset(); }
-  static gl::ProgramLibrary& library() { return *library_; }
-
- private:
-  inline static std::unique_ptr<gl::ProgramLibrary> library_;
+  static gl::ProgramLibrary& programs() { return library(); }
 };
 
 }  // namespace lucerna::test
