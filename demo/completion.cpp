@@ -1,7 +1,7 @@
 // lucerna completion bash|zsh|fish: generates a completion script from the command line's own tree.
 #include "base/error.hpp"
 #include "shared/programs.hpp"
-#include "shared/offers.hpp"
+#include "shared/completions.hpp"
 
 #include <fmt/format.h>
 
@@ -236,7 +236,7 @@ std::string fish(const std::vector<CommandEntry>& commands) {
 
 Work addCompletion(Command app) {
   auto shell = std::make_shared<std::string>();
-  offer(app.addOption("SHELL", *shell, "bash, zsh or fish").required(), {"bash", "zsh", "fish"});
+  addCompletions(app.addOption("SHELL", *shell, "bash, zsh or fish").required(), {"bash", "zsh", "fish"});
   app.setFooter("For the current shell only: source <(lucerna completion bash)");
   return [app, shell] {
     const std::vector<CommandEntry> commands = treeOfAll(app.parent());

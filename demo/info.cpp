@@ -1,4 +1,4 @@
-// lucerna info [SCENE]: host, driver, limits, extensions; a scene's counts and needs; the table of settings.
+// lucerna info [SCENE]: host, driver, limits, extensions; a scene's counts and features; the table of settings.
 #include "base/error.hpp"
 #include "shared/commands.hpp"
 #include "scene/scene.hpp"
@@ -106,7 +106,7 @@ int runInfo(const InfoOptions& options) {
     fmt::print("\nneeds\n");
     for (const auto& [name, needed] : analyse(*scene).named()) {
       fmt::print("  {:<32}{}\n", name, needed ? "yes" : "left out");
-      json["needs"][name] = needed;
+      json["features"][name] = needed;
     }
   }
   options.common.writeJson(json);

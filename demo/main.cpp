@@ -16,7 +16,7 @@ int main(int argc, char** argv) {
     commands.add("cluster", "Distribute work over many machines: by a shared folder, by Slurm, or on this machine only",
                  addCluster);
     commands.add("radiosity", "Radiosity by hemicubes: generate a model, solve it, show it", addRadiosity);
-    commands.add("info", "Host, driver, limits, extensions; a scene's counts and needs", addInfo);
+    commands.add("info", "Host, driver, limits, extensions; a scene's counts and features", addInfo);
     addOther(commands, "check");
     commands.add("media", "Participating media: the catalogue; a scene JSON drafted from an MTL", addMedia);
     addOther(commands, "bench");

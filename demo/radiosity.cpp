@@ -5,7 +5,7 @@
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "base/log.hpp"
-#include "shared/offers.hpp"
+#include "shared/completions.hpp"
 #include "radiosity/direct_light.hpp"
 #include "radiosity/original/rad_file.hpp"
 #include "radiosity/original/rad_models.hpp"
@@ -143,11 +143,12 @@ int generate(const Generate& options) {
 Work addGenerate(Command app) {
   auto options = std::make_shared<Generate>();
   app.addOption("FILE", options->file, "the triangle file to write").required();
-  offer(app.addOption("MODEL", options->model,
-                      "1: a cube lit by a small square; 2: a hall with columns; 3: light round an obstacle; or a "
-                      "scene file: OBJ, glTF, PLY, ...")
-            .required(),
-        {"1", "2", "3"});
+  addCompletions(
+      app.addOption("MODEL", options->model,
+                    "1: a cube lit by a small square; 2: a hall with columns; 3: light round an obstacle; or a "
+                    "scene file: OBJ, glTF, PLY, ...")
+          .required(),
+      {"1", "2", "3"});
   app.addOption("NUMBERS", options->numbers,
                 "AREA_THRESHOLD REFLECTANCE LIGHT_POWER (2.5 0.15 100000): triangles are halved until smaller than "
                 "the area; 0 to 1; 0 to 16777215")
@@ -213,19 +214,20 @@ Work addSolve(Command app) {
   };
   shortFor("radiosity.resolution", app.addOption("RESOLUTION", options->resolution,
                                                  "pixels per side of a hemicube's face (original 500, corrected 64)"));
-  offer(app.addOption("--fidelity", options->fidelity, "corrected, or original: as published").showDefault(),
-        {"corrected", "original"});
-  offer(shortFor("radiosity.solver",
-                 app.addOption("--solver", options->solver,
-                               "original: jacobi (default) or gauss-seidel; corrected: auto, jacobi, gauss-seidel, "
-                               "progressive, anderson, cg")),
-        {"auto", "jacobi", "gauss-seidel", "progressive", "anderson", "cg"});
+  addCompletions(app.addOption("--fidelity", options->fidelity, "corrected, or original: as published").showDefault(),
+                 {"corrected", "original"});
+  addCompletions(
+      shortFor("radiosity.solver",
+               app.addOption("--solver", options->solver,
+                             "original: jacobi (default) or gauss-seidel; corrected: auto, jacobi, gauss-seidel, "
+                             "progressive, anderson, cg")),
+      {"auto", "jacobi", "gauss-seidel", "progressive", "anderson", "cg"});
   std::vector<std::string> switches;
   for (const RadiosityDeviation& deviation : allRadiosityDeviations())
     for (const char* state : {"=on", "=off"}) switches.push_back(deviation.name + std::string(state));
-  offer(app.addOption("--deviation", options->deviations,
-                      "NAME=on|off: one deviation of the published original; may be repeated"),
-        switches);
+  addCompletions(app.addOption("--deviation", options->deviations,
+                               "NAME=on|off: one deviation of the published original; may be repeated"),
+                 switches);
   shortFor("radiosity.products",
            app.addOption("--max-sweeps", options->maxSweeps, "stop after this many sweeps (0: when nothing changes)")
                .showDefault());
@@ -248,14 +250,14 @@ Work addSolve(Command app) {
   addShort("--refinements", "radiosity.refinements",
            "times that a scene's patches are halved where light changes steeply (0)")
       .typeName("INT");
-  offer(
+  addCompletions(
       app.addOption(
           "--set", options->set,
           "corrected: radiosity.KEY=VALUE as lucerna render has them; comes after all other options; may be repeated"),
-      offeredSettings(&kSolutionCost));
-  offer(addShort("--visibility", "radiosity.visibility",
-                 "visibility method of pixels: auto (measured at start), raster, rays, item-buffer"),
-        {"auto", "raster", "rays", "item-buffer"});
+      settingCompletions(&kSolutionCost));
+  addCompletions(addShort("--visibility", "radiosity.visibility",
+                          "visibility method of pixels: auto (measured at start), raster, rays, item-buffer"),
+                 {"auto", "raster", "rays", "item-buffer"});
   app.setFooter(radiosityDeviationsHelp());
   options->common.declare(app);
   return [options, shorter] {

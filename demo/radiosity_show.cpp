@@ -5,7 +5,7 @@
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "base/log.hpp"
-#include "shared/offers.hpp"
+#include "shared/completions.hpp"
 #include "radiosity/original/display.hpp"
 #include "scene/scene.hpp"
 #include "walk/free_camera.hpp"
@@ -153,22 +153,24 @@ int runRadiosityShow(const RadiosityShowOptions& options) {
 Work addRadiosityShow(Command app) {
   auto options = std::make_shared<RadiosityShowOptions>();
   app.addOption("FILE", options->file, "a triangle file").required();
-  offer(app.addOption("MODE", options->mode,
-                      "s: back-facing triangles too, by their corners; c: the 24-bit colours of the computation"),
-        {"s", "c"});
+  addCompletions(
+      app.addOption("MODE", options->mode,
+                    "s: back-facing triangles too, by their corners; c: the 24-bit colours of the computation"),
+      {"s", "c"});
   app.addOption("-o,--output", options->output, "OUT.png: a picture instead of a window");
-  offer(app.addOption("--mapping", options->mapping,
-                      "log (as published, default), linear (times a constant), filmic (the engine's), false "
-                      "(colours), bits (as c)"),
-        {"log", "linear", "filmic", "false", "bits"});
+  addCompletions(app.addOption("--mapping", options->mapping,
+                               "log (as published, default), linear (times a constant), filmic (the engine's), false "
+                               "(colours), bits (as c)"),
+                 {"log", "linear", "filmic", "false", "bits"});
   app.addOption("--constant", options->constant, "linear and filmic: factor of values, 1 is white (0: from the scene)")
       .showDefault();
   app.addFlag("--interpolate", options->interpolate,
               "colours interpolated between corners, each the mean of all triangles that meet there, as published");
-  offer(app.addOption("--fidelity", options->fidelity,
-                      "original: as published; corrected, with --interpolate: values instead of colours, and never "
-                      "across an edge"),
-        {"original", "corrected"})
+  addCompletions(
+      app.addOption("--fidelity", options->fidelity,
+                    "original: as published; corrected, with --interpolate: values instead of colours, and never "
+                    "across an edge"),
+      {"original", "corrected"})
       .oneOf({"original", "corrected"});
   app.addOption("--scene", options->scene, "the scene that FILE was generated from: its textures times the light");
   app.addOption("--edge", options->edge, "with --scene: the --edge that FILE was generated with").positive();

@@ -1,5 +1,5 @@
 // lucerna render SCENE ... -o OUT: one picture. PNG is tone mapped; hdr, exr and pfm keep linear radiance.
-#include "ask.hpp"
+#include "inspect.hpp"
 #include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/files.hpp"
@@ -9,8 +9,8 @@
 #include "rsm/rsm_frame.hpp"
 #include "shared/commands.hpp"
 #include "gl/draw.hpp"
-#include "shared/offers.hpp"
-#include "pathtracer/ask_paths.hpp"
+#include "shared/completions.hpp"
+#include "pathtracer/inspect_paths.hpp"
 #include "render_path.hpp"
 #include "scene/scene_file.hpp"
 #include "render/deviations.hpp"
@@ -28,39 +28,39 @@ struct RenderOptions {
   CommonOptions common;
   PictureOptions picture;
   PathOptions path;
-  std::string scene, camera, output, ask;
+  std::string scene, camera, output, inspected;
   int repeat = 1;
 };
 
-/// --ask: prints what lit a pixel. Path tracing traces only that pixel's paths.
-int ask(const RenderOptions& options) {
+/// --inspect: prints what lit a pixel. Path tracing traces only that pixel's paths.
+int inspect(const RenderOptions& options) {
   if (!options.output.empty())
-    throwBadInput("--ask {}: prints JSON and writes no picture; cannot be combined with -o", options.ask);
+    throwBadInput("--inspect {}: prints JSON and writes no picture; cannot be combined with -o", options.inspected);
   const PathOptions& path = options.path;
   if (path.seconds || path.error || !path.samples.empty() || !path.part.empty() || !path.checkpoint.empty())
-    throwBadInput("--ask {}: with path tracing accepts --spp, --bounces and --seed", options.ask);
+    throwBadInput("--inspect {}: with path tracing accepts --spp, --bounces and --seed", options.inspected);
   RenderSettings settings = options.picture.parse();
   settings.fullFloatTarget = true;
   if (settings.of<RadiosityView::Settings>().direct == RadiosityView::Direct::automatic)
     settings.of<RadiosityView::Settings>().direct = RadiosityView::Direct::pixels;
-  const glm::ivec2 pixel = parsePixel(options.ask, settings.size);
+  const glm::ivec2 pixel = parsePixel(options.inspected, settings.size);
   const Scene scene = loadScene(options.scene);
   const Camera camera = chooseCamera(scene, options.camera);
   const auto host = options.common.makeHost(false);
   const gl::Context context;
   gl::ProgramLibrary programs;
-  PixelAnswer answer;
+  PixelInspection answer;
   if (settings.technique == "path") {
-    answer = askPaths(context, programs, scene, camera, tracerSettings(options.picture, path, settings),
-                      path.spp.value_or(static_cast<std::uint32_t>(settings.of<PathSettings>().samples)), pixel);
+    answer = inspectPaths(context, programs, scene, camera, tracerSettings(options.picture, path, settings),
+                          path.spp.value_or(static_cast<std::uint32_t>(settings.of<PathSettings>().samples)), pixel);
   } else {
     Renderer renderer(context, programs, scene, settings);
     renderer.renderToTheEnd(camera);
-    answer = renderer.ask(programs, camera, pixel);
+    answer = renderer.inspect(programs, camera, pixel);
     renderer.drain();
   }
   answer.checkSum();
-  answer.condense(kAskedShares);
+  answer.condense(kInspectedShares);
   const nlohmann::ordered_json json = toJson(answer);
   fmt::print("{}\n", json.dump(2));
   options.common.writeJson(json);
@@ -74,7 +74,7 @@ int runRender(RenderOptions options) {
   options.picture.readSettingsFile();
   if (!options.path.spp) options.path.spp = options.picture.settingsSpp;
   if (options.picture.technique != "path") options.path.refuseIfGiven(options.picture.technique);
-  if (!options.ask.empty()) return ask(options);
+  if (!options.inspected.empty()) return inspect(options);
   if (options.picture.technique == "path")
     return renderPath(options.common, options.picture, options.path, options.scene, options.camera, options.output);
   if (options.output.empty()) throwBadInput("--output is missing: the file for the picture");
@@ -168,7 +168,7 @@ Work addRender(Command app) {
                 "OUT.{png,hdr,exr,pfm}; png is tone mapped, the others are linear; may be left out with --samples");
   app.addOption("--repeat", options->repeat, "draw this many frames, for stage times").range(1, 100000).showDefault();
   app.addOption(
-      "--ask", options->ask,
+      "--inspect", options->inspected,
       "X,Y: instead of writing a picture, print as JSON what lit this pixel, from the top left: each lamp, texel, "
       "cell, cache record, patch or path, with its share");
   options->picture.declare(app);

@@ -1,16 +1,16 @@
-// lucerna bench all --out DIR: the whole report on one page, with an index: error, deviations, stability, needs, rays,
-// and the three originals' tables and pictures.
+// lucerna bench all --out DIR: the whole report on one page, with an index: error, deviations, stability, features,
+// rays, and the three originals' tables and pictures.
 #include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "bench/bench.hpp"
 #include "bench/error_bench.hpp"
 #include "originals/lpv_pictures.hpp"
-#include "bench/needs_bench.hpp"
+#include "bench/features_bench.hpp"
 #include "originals/rad.hpp"
 #include "bench/rays_bench.hpp"
 #include "bench/stability.hpp"
-#include "shared/offers.hpp"
+#include "shared/completions.hpp"
 #include "shared/parts.hpp"
 
 #include <fmt/core.h>
@@ -32,11 +32,11 @@ struct AllOptions {
   CommonOptions common;
   std::string out;
   double scale = 0.25;
-  std::vector<std::string> scenes;  ///< for error, needs and rays; empty: Cornell and atrium
+  std::vector<std::string> scenes;  ///< for error, features and rays; empty: Cornell and atrium
   std::vector<std::string> parts;  ///< empty: all
 };
 
-constexpr const char* kParts[] = {"error", "deviations", "stability", "needs", "rays", "tables", "pictures"};
+constexpr const char* kParts[] = {"error", "deviations", "stability", "features", "rays", "tables", "pictures"};
 
 /// Scales for --scale, so that the originals' own sizes finish in minutes on a software renderer.
 constexpr double kVptTables = 0.04, kVptPictures = 0.01, kRadTables = 0.2, kRadPictures = 0.2;
@@ -96,7 +96,7 @@ class Report {
     json_["stability"] = stabilityJson(rows);
   }
 
-  void needs(const std::vector<std::string>& files) {
+  void features(const std::vector<std::string>& files) {
     page_.section("Features that scenes do not need");
     HtmlPage::Table table{
         {"scene", "left out", "compile ms", "GPU MiB", "ms a picture", "largest pixel difference"}, {}, {}};
@@ -104,7 +104,7 @@ class Report {
       const Scene scene = loadScene(file);
       RenderSettings settings;
       settings.size = parseSize(sizeOf(options_.scale));
-      const NeedsResult r = measureNeeds(context_, scene, scene.cameras.front(), settings, 3);
+      const FeaturesResult r = measureFeatures(context_, scene, scene.cameras.front(), settings, 3);
       std::string names;
       for (const std::string& name : r.leftOut) names += (names.empty() ? "" : ", ") + name;
       const auto both = [](double with, double without) {
@@ -114,7 +114,7 @@ class Report {
           {r.scene, names, both(r.with.compileMs, r.without.compileMs),
            both(static_cast<double>(r.with.gpuBytes) / 1048576.0, static_cast<double>(r.without.gpuBytes) / 1048576.0),
            both(r.with.ms, r.without.ms), fmt::format("{:.2g} of {:.2g}", r.maxDifference, r.maxRadiance)});
-      json_["needs"].push_back(needsJson(r));
+      json_["features"].push_back(featuresJson(r));
     }
     page_.paragraph(
         "Features the scene does not need are left out, compared with being forced on with data that change nothing.");
@@ -283,7 +283,7 @@ int runAll(AllOptions options) {
   for (const std::string& scene : options.scenes) part("error", [&] { report.errors(scene, false); });
   part("deviations", [&] { report.errors(options.scenes.front(), true); });
   part("stability", [&] { report.stability(); });
-  part("needs", [&] { report.needs(options.scenes); });
+  part("features", [&] { report.features(options.scenes); });
   part("rays", [&] { report.rays(options.scenes); });
   part("tables", [&] { report.tables(originals); });
   part("pictures", [&] { report.pictures(originals); });
@@ -309,14 +309,15 @@ int runAll(AllOptions options) {
 
 Work addBenchAll(Command app) {
   auto options = std::make_shared<bench::AllOptions>();
-  app.addOption("SCENE", options->scenes,
-                "scene files for error and needs (default: the Cornell box and the atrium); the first for the tables "
-                "and pictures of lpv (default: the atrium)");
+  app.addOption(
+      "SCENE", options->scenes,
+      "scene files for error and features (default: the Cornell box and the atrium); the first for the tables "
+      "and pictures of lpv (default: the atrium)");
   app.addOption("--out", options->out, "folder for the report; an interrupted one is resumed").required();
-  offer(app.addOption("--parts", options->parts,
-                      "of error, deviations, stability, needs, rays, tables, pictures; default: all")
-            .delimiter(','),
-        {std::begin(bench::kParts), std::end(bench::kParts)});
+  addCompletions(app.addOption("--parts", options->parts,
+                               "of error, deviations, stability, features, rays, tables, pictures; default: all")
+                     .delimiter(','),
+                 {std::begin(bench::kParts), std::end(bench::kParts)});
   app.addOption("--scale", options->scale,
                 "amount of work: pixels and seconds; 1 takes four times as long as the default")
       .showDefault();

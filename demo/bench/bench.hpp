@@ -9,7 +9,7 @@ Work addBenchRays(Command app);
 Work addBenchError(Command app);
 Work addBenchReferences(Command app);
 Work addBenchStability(Command app);
-Work addBenchNeeds(Command app);
+Work addBenchFeatures(Command app);
 Work addBenchAll(Command app);
 Work addCheck(Command app);
 Work addTune(Command app);

@@ -20,7 +20,7 @@
 #include "base/statistics.hpp"
 #include "bench/error_rows.hpp"
 #include "host/host.hpp"
-#include "shared/offers.hpp"
+#include "shared/completions.hpp"
 
 #include <fmt/core.h>
 #include <fmt/format.h>
@@ -323,8 +323,8 @@ Work addBenchDiff(Command app) {
   app.addOption("B", options->b,
                 "another one of the same scene, view and size; exit code 1 if a row of it is worse or missing")
       .required();
-  offer(app.addOption("--only", options->what, "compare only error or time; default: both").delimiter(','),
-        {"error", "time"});
+  addCompletions(app.addOption("--only", options->what, "compare only error or time; default: both").delimiter(','),
+                 {"error", "time"});
   app.addOption("--significance", options->significance,
                 "probability that any row is called better or worse although nothing changed")
       .showDefault();

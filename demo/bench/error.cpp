@@ -8,7 +8,7 @@
 #include "bench/bench.hpp"
 #include "bench/error_bench.hpp"
 #include "shared/provenance.hpp"
-#include "shared/offers.hpp"
+#include "shared/completions.hpp"
 #include "shared/shell.hpp"
 
 #include <fmt/core.h>
@@ -108,10 +108,10 @@ void ErrorBenchOptions::declareView(Command app) {
   app.addOption("--size", size, "WIDTHxHEIGHT of the pictures").showDefault();
   app.addOption("--references", references,
                 "folder of cached references (default: LUCERNA_REFERENCES, or lucerna in the user's cache)");
-  offer(app.addOption("--techniques", techniques,
-                      "only these of direct, rsm, lpv, irradiance-cache, radiosity, path; default: all")
-            .delimiter(','),
-        {"direct", "rsm", "lpv", "irradiance-cache", "radiosity", "path"});
+  addCompletions(app.addOption("--techniques", techniques,
+                               "only these of direct, rsm, lpv, irradiance-cache, radiosity, path; default: all")
+                     .delimiter(','),
+                 {"direct", "rsm", "lpv", "irradiance-cache", "radiosity", "path"});
   app.addFlag("--small", small, "leave out the most expensive points");
   app.addFlag(
       "--bounds", bounds,

@@ -17,8 +17,9 @@ lucerna::demo::Work addBench(lucerna::demo::Command app) {
                "Two reports of bench error row by row: better, worse or undecided, by a test that uses both spreads",
                addBenchDiff);
   commands.add("stability", "Stiff and extreme cases: expected, measured, verdict", addBenchStability);
-  commands.add("needs", "The features that a scene does not need, and what leaving them out saves", addBenchNeeds);
-  commands.add("all", "The whole report on one page: tables, error, stability, needs, rays", addBenchAll);
+  commands.add("features", "The features that a scene does not need, and what leaving them out saves",
+               addBenchFeatures);
+  commands.add("all", "The whole report on one page: tables, error, stability, features, rays", addBenchAll);
   return commands.work();
 }
 

@@ -37,7 +37,8 @@ Image less(Image a, const Image& b) {
   return a;
 }
 
-/// The references that a bench needs: those of the techniques' models, and those that show how much a model leaves out.
+/// The references that a bench features: those of the techniques' models, and those that show how much a model leaves
+/// out.
 std::set<LightPaths> wantedOf(const std::vector<TechniqueModel>& models, LightKinds scene) {
   std::set<LightPaths> wanted{{Transport::all, scene},
                               {Transport::direct, scene},

@@ -1,6 +1,6 @@
 // Stiff and extreme cases of the light propagation volume alone, fed by synthetic reflective shadow maps: its kernel
 // has exact answers. The published answers are those of [Kaplanyan2010] with exact solid angles, computed in double
-// precision (tests/support/lpv_twin.*).
+// precision (tests/support/lpv_reference.*).
 #include "bench/stability.hpp"
 #include "lpv/light_propagation_volume.hpp"
 

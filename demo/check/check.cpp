@@ -11,7 +11,7 @@
 #include "bench/bench.hpp"
 #include "check/report.hpp"
 #include "gl/draw.hpp"
-#include "shared/offers.hpp"
+#include "shared/completions.hpp"
 #include "shared/shell.hpp"
 
 #include <fmt/core.h>
@@ -383,7 +383,8 @@ Work addCheck(Command app) {
   app.addOption("--minutes", options->minutes, "it ends by then; what finds no time is a row \"not run\"")
       .showDefault()
       .range(0.05, 1440.0);
-  offer(app.addOption("--only", options->only, "only these parts, or PART/NAME of a report").delimiter(','), parts);
+  addCompletions(app.addOption("--only", options->only, "only these parts, or PART/NAME of a report").delimiter(','),
+                 parts);
   app.addOption("--reference", options->input.reference,
                 "values that pictures are compared with (default: assets/check/reference.json)");
   app.addOption("--write-reference", options->writeReference,

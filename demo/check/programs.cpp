@@ -122,7 +122,7 @@ Finding compileVariant(const Asked& asked, const UnitInput& input) {
   Renderer renderer(session.context, session.programs, scene, settings);
   if (!asked.isPath()) {
     renderer.render(scene.cameras.front());
-    renderer.ask(session.programs, scene.cameras.front(), {16, 9});
+    renderer.inspect(session.programs, scene.cameras.front(), {16, 9});
   }
   const gl::Lines lines(session.programs);
   const gl::Overlay overlay(session.programs);

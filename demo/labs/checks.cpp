@@ -241,26 +241,27 @@ bool Checks::task(int number) {
 // ------------------------------------------------------------------------------------------------------------ the
 // tests
 
-bool Checks::twin(const std::string& name, const Twin& twin) {
-  const auto stride = static_cast<std::size_t>(twin.stride), count = static_cast<std::size_t>(twin.points);
+bool Checks::againstReference(const std::string& name, const Reference& expected) {
+  const auto stride = static_cast<std::size_t>(expected.stride), count = static_cast<std::size_t>(expected.points);
   std::vector<glm::vec4> points(stride * count, glm::vec4(0.0f));
   const auto pointOf = [&](std::size_t i) { return Point(points).subspan(i * stride, stride); };
   std::vector<glm::dvec4> reference(count);
   double square = 0.0;
   for (std::size_t i = 0; i < count; ++i) {
-    twin.draw(random_, std::span(points).subspan(i * stride, stride));
-    reference[i] = twin.reference(pointOf(i));
+    expected.draw(random_, std::span(points).subspan(i * stride, stride));
+    reference[i] = expected.reference(pointOf(i));
     square += glm::dot(reference[i], reference[i]);
   }
   const double rms = std::sqrt(square / static_cast<double>(count)), scale = 0.01 * rms;
   // Where terms cancel, the result carries the rounding of the terms: eight units in the last place of a float of
   // typical size.
   const double rounding = 0x1p-21 * rms;
-  const std::vector<glm::vec4> measured = run(twin.probe, points, twin.stride, twin.points);
+  const std::vector<glm::vec4> measured = run(expected.probe, points, expected.stride, expected.points);
 
   // Distance in units of the tolerance; the worst point, and the number of points that a wrong formula would explain.
   const auto distance = [&](std::size_t i, const glm::dvec4& value) {
-    return glm::length(glm::dvec4(measured[i]) - value) / (twin.tolerance * (glm::length(value) + scale) + rounding);
+    return glm::length(glm::dvec4(measured[i]) - value) /
+           (expected.tolerance * (glm::length(value) + scale) + rounding);
   };
   std::size_t worst = 0, agreeing = 0;
   bool finite = true;
@@ -279,9 +280,9 @@ bool Checks::twin(const std::string& name, const Twin& twin) {
       fmt::format("{} of {} points agree; the worst has inputs {}", agreeing, count, pointText(pointOf(worst)));
   const auto diagnose = [&]() -> Mistake {
     if (!finite) return kNan;
-    const Twin::Wrong* best = nullptr;
+    const Reference::Wrong* best = nullptr;
     std::size_t most = 0;
-    for (const Twin::Wrong& wrong : twin.mistakes) {
+    for (const Reference::Wrong& wrong : expected.mistakes) {
       std::size_t explained = 0;
       for (std::size_t i = 0; i < count; ++i)
         if (distance(i, wrong.value(pointOf(i))) <= 3.0) ++explained;
@@ -301,7 +302,7 @@ bool Checks::twin(const std::string& name, const Twin& twin) {
     bool proportional = true;
     for (std::size_t i = 0; i < count && proportional; ++i)
       proportional = glm::length(glm::dvec4(measured[i]) - ratio * reference[i]) <=
-                     10.0 * twin.tolerance * std::abs(ratio) * (glm::length(reference[i]) + scale);
+                     10.0 * expected.tolerance * std::abs(ratio) * (glm::length(reference[i]) + scale);
     if (proportional)
       return factorMistake(ratio).value_or(
           Mistake{"factor", fmt::format("everything is {:.6g} times what it should be: a constant is wrong", ratio)});

@@ -44,8 +44,8 @@ struct Mistake {
 using Point = std::span<const glm::vec4>;
 using Function = std::function<glm::dvec4(Point)>;
 
-/// Compares a function with its twin in double precision, point by point.
-struct Twin {
+/// Compares a function with its reference implementation in double precision, point by point.
+struct Reference {
   int probe = 0;
   int stride = 1;
   std::function<void(Random&, std::span<glm::vec4>)> draw = {};  ///< fills one point
@@ -216,7 +216,7 @@ class Checks {
   bool task(int number);
 
   // Each returns whether it passed, so that later, harder checks can follow after &&.
-  bool twin(const std::string& name, const Twin& twin);
+  bool againstReference(const std::string& name, const Reference& expected);
   bool mean(const std::string& name, const Mean& mean);
   bool chiSquare(const std::string& name, const ChiSquare& test);
   bool picture(const std::string& name, const Picture& picture);

@@ -7,7 +7,7 @@
 #include "shared/contact_sheet.hpp"
 #include "originals/lpv_pictures.hpp"
 #include "originals/rad.hpp"
-#include "shared/offers.hpp"
+#include "shared/completions.hpp"
 #include "scene/place.hpp"
 #include "render/deviations.hpp"
 
@@ -317,14 +317,14 @@ Work addBenchPictures(Command app) {
   auto options = std::make_shared<PicturesOptions>();
   app.addOption("SCENE", options->scene,
                 "a scene file for lpv (default: the atrium; the published scene is Crytek Sponza)");
-  offer(app.addOption("--original", options->original, "the original: lpv, rad or vpt").required(),
-        {"lpv", "rad", "vpt"});
+  addCompletions(app.addOption("--original", options->original, "the original: lpv, rad or vpt").required(),
+                 {"lpv", "rad", "vpt"});
   app.addOption("-o,--output", options->output, "FILE.png").required();
   app.addOption("--camera", options->camera, "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");
-  offer(app.addOption("--fidelity", options->fidelity,
-                      "corrected; original: as published; lpv: thesis (original) or demo")
-            .showDefault(),
-        {"corrected", "original", "thesis", "demo"});
+  addCompletions(app.addOption("--fidelity", options->fidelity,
+                               "corrected; original: as published; lpv: thesis (original) or demo")
+                     .showDefault(),
+                 {"corrected", "original", "thesis", "demo"});
   app.addOption("--size", options->size, "WIDTHxHEIGHT of a tile in pixels (lpv and rad 640x360, vpt 320x180)");
   app.addOption("--scale", options->scale,
                 "vpt: the published samples times this (0.02); rad: triangles over and pixels times this (1); above "

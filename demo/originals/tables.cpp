@@ -6,7 +6,7 @@
 #include "originals/originals.hpp"
 #include "shared/contact_sheet.hpp"
 #include "originals/rad.hpp"
-#include "shared/offers.hpp"
+#include "shared/completions.hpp"
 
 #include <fmt/core.h>
 
@@ -221,20 +221,21 @@ Work addBenchTables(Command app) {
   auto options = std::make_shared<TablesOptions>();
   app.addOption("SCENE", options->scene,
                 "a scene file for lpv (default: the atrium; the published scene is Crytek Sponza)");
-  offer(app.addOption("--original", options->original, "the original: lpv, rad or vpt").required(),
-        {"lpv", "rad", "vpt"});
+  addCompletions(app.addOption("--original", options->original, "the original: lpv, rad or vpt").required(),
+                 {"lpv", "rad", "vpt"});
   app.addOption("--scale", options->scale,
                 "less work on a slow machine, above 0, at most 1. lpv and rad (1): fewer frames or hemicubes; below "
                 "0.5 also smaller "
                 "grids and models. vpt (0.05): each side and the samples of the published pictures times this");
-  offer(app.addOption("--fidelity", options->fidelity,
-                      "vpt: original: the published estimator on scenes lit as published, the corrected beside it; or "
-                      "corrected (default)"),
-        {"corrected", "original"});
-  offer(app.addOption("--fill", options->fill,
-                      "lpv: the way to fill the grids measured next to the published one: layered, fixed, "
-                      "atomic (the fastest here, tried first)"),
-        {"layered", "fixed", "atomic"});
+  addCompletions(
+      app.addOption("--fidelity", options->fidelity,
+                    "vpt: original: the published estimator on scenes lit as published, the corrected beside it; or "
+                    "corrected (default)"),
+      {"corrected", "original"});
+  addCompletions(app.addOption("--fill", options->fill,
+                               "lpv: the way to fill the grids measured next to the published one: layered, fixed, "
+                               "atomic (the fastest here, tried first)"),
+                 {"layered", "fixed", "atomic"});
   app.addOption("--chart", options->chart, "lpv: FILE.png, figure 7.1: atomics and the geometry shader as bars");
   options->part.declare(app, "rows");
   options->common.declare(app);

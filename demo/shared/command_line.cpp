@@ -4,7 +4,7 @@
 #include "gl/context.hpp"
 #include "shared/command_tree.hpp"
 #include "shared/commands.hpp"
-#include "shared/offers.hpp"
+#include "shared/completions.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
@@ -137,15 +137,15 @@ Work Subcommands::work() const {
   };
 }
 
-// ---------------------------------------------------------------------------------------------------- offers
+// ---------------------------------------------------------------------------------------------------- completions
 
 namespace {
 
-constexpr const char* kName = "offers";
+constexpr const char* kName = "completions";
 
 }  // namespace
 
-Option offer(Option option, const std::vector<std::string>& values) {
+Option addCompletions(Option option, const std::vector<std::string>& values) {
   try {
     option.cli11().get_validator(kName)->description(joined(values));
   } catch (const CLI::OptionNotFound&) {
@@ -161,7 +161,7 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
-std::vector<std::string> offered(Option option) {
+std::vector<std::string> completionsOf(Option option) {
   std::vector<std::string> values;
   try {
     std::istringstream text(std::as_const(*option.cli11().get_validator(kName)).active(true).get_description());
@@ -187,7 +187,7 @@ OptionEntry entryOf(CLI::Option& option) {
   entry.defaultValue = option.get_default_str();
   entry.required = option.get_required();
   entry.repeats = option.get_items_expected_max() > 1;
-  entry.values = offered(Option(option));
+  entry.values = completionsOf(Option(option));
   if (option.get_items_expected_max() > 0) {
     // "INT:INT in [1 - 8]": the type, then the validators' description.
     const std::string text = option.get_type_name();

@@ -14,7 +14,7 @@ struct OptionEntry {
   std::string type;  ///< TEXT, INT, UINT, FLOAT; empty for a flag
   std::string range;  ///< accepted values, as described by CLI11; empty: any
   std::string defaultValue;  ///< empty: none shown
-  std::vector<std::string> values;  ///< offered by completions (offers.hpp)
+  std::vector<std::string> values;  ///< offered by completions (completions.hpp)
   bool required = false, repeats = false;
 
   bool takesValue() const { return !type.empty(); }

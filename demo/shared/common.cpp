@@ -3,7 +3,7 @@
 #include "base/log.hpp"
 #include "render/techniques.hpp"
 #include "shared/commands.hpp"
-#include "shared/offers.hpp"
+#include "shared/completions.hpp"
 #include "render/deviations.hpp"
 #include "shared/settings_file.hpp"
 
@@ -41,7 +41,7 @@ std::string settingsHelp() {
   return text;
 }
 
-std::vector<std::string> offeredSettings(const SettingCost* only) {
+std::vector<std::string> settingCompletions(const SettingCost* only) {
   std::vector<std::string> words;
   for (const Setting& setting : allSettings()) {
     if (only && setting.cost != *only) continue;
@@ -68,15 +68,15 @@ std::string deviationsHelp() {
 }
 
 void PictureOptions::declare(Command app) {
-  const auto offerNames = [](Option option, const auto& names) {
-    offer(option, std::vector<std::string>(names.begin(), names.end()));
+  const auto addNames = [](Option option, const auto& names) {
+    addCompletions(option, std::vector<std::string>(names.begin(), names.end()));
   };
-  offerNames(app.addOption("--technique", technique,
-                           fmt::format("{}; without it the one that alone reads a setting or deviation given, else {}",
-                                       fmt::join(techniqueNames(), ", "), kUsualTechnique)),
-             techniqueNames());
-  offerNames(app.addOption("--component", component, "all, direct or indirect").showDefault(), namesOf(Component{}));
-  offerNames(
+  addNames(app.addOption("--technique", technique,
+                         fmt::format("{}; without it the one that alone reads a setting or deviation given, else {}",
+                                     fmt::join(techniqueNames(), ", "), kUsualTechnique)),
+           techniqueNames());
+  addNames(app.addOption("--component", component, "all, direct or indirect").showDefault(), namesOf(Component{}));
+  addNames(
       app.addOption("--fidelity", fidelity,
                     "corrected; original: as published; lpv: thesis (original) or demo, the program published with it")
           .showDefault(),
@@ -84,14 +84,14 @@ void PictureOptions::declare(Command app) {
   std::vector<std::string> switches;
   for (const Deviation& deviation : allDeviations())
     for (const char* state : {"=on", "=off"}) switches.push_back(deviation.name + std::string(state));
-  offer(
+  addCompletions(
       app.addOption("--deviation", deviations, "NAME=on|off: one deviation of the published original; may be repeated"),
       switches);
   app.addOption("--size", size,
                 "WIDTHxHEIGHT in pixels; path without it: 1920x1080 for the JSON of the VPT original and for "
                 "--fidelity original")
       .showDefault();
-  offer(app.addOption("--set", settings, "KEY=VALUE, see below; may be repeated"), offeredSettings());
+  addCompletions(app.addOption("--set", settings, "KEY=VALUE, see below; may be repeated"), settingCompletions());
   app.addOption("--settings", settingsFile,
                 "a settings file, as written by `lucerna tune`; other options here override it");
   app.setFooter(settingsHelp() + deviationsHelp());

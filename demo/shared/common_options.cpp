@@ -5,7 +5,7 @@
 #include "base/log.hpp"
 #include "shared/commands.hpp"
 #include "gl/barrier_ledger.hpp"
-#include "shared/offers.hpp"
+#include "shared/completions.hpp"
 
 #include <fmt/core.h>
 
@@ -16,10 +16,10 @@
 namespace lucerna::demo {
 
 void CommonOptions::declare(Command app) {
-  offer(app.addOption("--host", host,
-                      "creates the OpenGL context: window, egl or osmesa (default: LUCERNA_HOST, else as in "
-                      "docs/commands.md)"),
-        {"window", "egl", "osmesa"});
+  addCompletions(app.addOption("--host", host,
+                               "creates the OpenGL context: window, egl or osmesa (default: LUCERNA_HOST, else as in "
+                               "docs/commands.md)"),
+                 {"window", "egl", "osmesa"});
   app.addOption("--json", json, "write machine-readable results to this file");
   app.addFlag("--quiet", quiet, "no warnings, no progress");
   app.addFlag("--check-barriers", checkBarriers,

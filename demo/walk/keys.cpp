@@ -37,7 +37,7 @@ constexpr KeyBinding kKeys[] = {
     {'Z', false, Action::magnifier, "magnifier with values"},
     {'H', false, Action::nextView, "picture, signed error, relative error, z-score, FLIP"},
     {'T', false, Action::liveReference, "live reference: a reference of this view while the camera rests"},
-    {'I', false, Action::ask, "what lit the pixel under the cursor"},
+    {'I', false, Action::inspect, "what lit the pixel under the cursor"},
     {'F', false, Action::fit, "show the whole picture again, after zooming"},
     {key::kEscape, false, Action::end, "stop the current work; otherwise quit"},
 };

@@ -40,7 +40,7 @@ enum class Action {
   magnifier,
   nextView,
   liveReference,
-  ask,
+  inspect,
   fit,
 };
 

@@ -1,6 +1,6 @@
 #include "walk/pixel_section.hpp"
 
-#include "ask.hpp"
+#include "inspect.hpp"
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "walk/controls.hpp"
@@ -35,7 +35,7 @@ std::string timesOf(const std::string& group) {
 }
 
 void saveAnswer(WalkState& s) {
-  const PixelAnswer& answer = *s.answer;
+  const PixelInspection& answer = *s.answer;
   try {
     std::error_code ignored;
     std::filesystem::create_directories(s.shotFolder, ignored);
@@ -53,7 +53,7 @@ constexpr ImU32 kGroupColor = IM_COL32(70, 110, 160, 190), kShareColor = IM_COL3
 }  // namespace
 
 void showPixel(Ui& ui, WalkState& s) {
-  checkbox(ui, "ask by clicking", s.asksByClick);
+  checkbox(ui, "inspect by clicking", s.inspectsByClick);
   explain(
       "Click on the picture to see what lit that pixel, instead of looking around. Key I shows it for the pixel under "
       "the cursor.");
@@ -61,10 +61,10 @@ void showPixel(Ui& ui, WalkState& s) {
     wrapped("Press I over a pixel to see what lit it.");
     return;
   }
-  const PixelAnswer& answer = *s.answer;
+  const PixelInspection& answer = *s.answer;
   ImGui::SameLine();
   checkbox(ui, "draw its light", s.drawsAnswer);
-  line(fmt::format("pixel {}, {} of {}: {}", answer.pixel.x, answer.pixel.y, s.askedSide == 0 ? "A" : "B",
+  line(fmt::format("pixel {}, {} of {}: {}", answer.pixel.x, answer.pixel.y, s.inspectedSide == 0 ? "A" : "B",
                    answer.technique));
   line(fmt::format("radiance {:.4g} {:.4g} {:.4g}", answer.radiance.x, answer.radiance.y, answer.radiance.z));
   if (answer.samples > 0)
@@ -103,7 +103,7 @@ void showPixel(Ui& ui, WalkState& s) {
   if (button(ui, "forget")) s.answer.reset();
 }
 
-std::vector<gl::Lines::Line> linesOf(const PixelAnswer& answer, int pointedAt, const glm::dvec3& origin,
+std::vector<gl::Lines::Line> linesOf(const PixelInspection& answer, int pointedAt, const glm::dvec3& origin,
                                      const Bounds& bounds) {
   std::vector<gl::Lines::Line> lines;
   double most = 1e-300;

@@ -1,4 +1,4 @@
-// The panel's section on the queried pixel, and its light paths as lines in the scene.
+// The panel's section on the inspected pixel, and its light paths as lines in the scene.
 #pragma once
 
 #include "gl/lines.hpp"
@@ -12,7 +12,7 @@ namespace lucerna::demo {
 void showPixel(Ui& ui, WalkState& state);
 /// Sources of the pixel's light, relative to `origin`: one line per share, more opaque for brighter ones, and a cross
 /// at the light.
-std::vector<gl::Lines::Line> linesOf(const PixelAnswer& answer, int pointedAt, const glm::dvec3& origin,
+std::vector<gl::Lines::Line> linesOf(const PixelInspection& answer, int pointedAt, const glm::dvec3& origin,
                                      const Bounds& bounds);
 
 }  // namespace lucerna::demo

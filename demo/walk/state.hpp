@@ -116,11 +116,11 @@ struct WalkState {
   std::vector<float> frameMs;  ///< recent frames
   std::string rendererName;
 
-  // The queried pixel, and what lit it.
-  bool asksByClick = false, drawsAnswer = true;
-  std::optional<glm::dvec2> askedPlace;  ///< in the window, to be queried in this frame
-  std::optional<PixelAnswer> answer;
-  int askedSide = 0;
+  // The inspected pixel, and what lit it.
+  bool inspectsByClick = false, drawsAnswer = true;
+  std::optional<glm::dvec2> inspectedPlace;  ///< in the window, to be queried in this frame
+  std::optional<PixelInspection> answer;
+  int inspectedSide = 0;
   bool answerIsNew = false;
   int pointedShare = -1;  ///< index of the share under the cursor
 

@@ -14,7 +14,7 @@
 #include "gl/draw.hpp"
 #include "measure/image_errors.hpp"
 #include "measure/reference.hpp"
-#include "shared/offers.hpp"
+#include "shared/completions.hpp"
 #include "scene/key_frames.hpp"
 #include "render/deviations.hpp"
 #include "walk/keys.hpp"
@@ -258,9 +258,10 @@ Work addWalk(Command app) {
   app.addOption("--capture", options->capture, "in a window: the frame, from 0, that RenderDoc captures")
       .range(0, 1000000);
   app.addOption("--shots", options->shots, "folder for screenshots").showDefault();
-  offer(app.addOption("--panel", options->panel,
-                      "whether the panel is open at the start: on, off or auto (auto: on, but not with --json)"),
-        {"on", "off", "auto"});
+  addCompletions(
+      app.addOption("--panel", options->panel,
+                    "whether the panel is open at the start: on, off or auto (auto: on, but not with --json)"),
+      {"on", "off", "auto"});
   options->picture.declare(app);
   options->common.declare(app);
   app.setFooter(keysHelp() + "\n" + app.footer());

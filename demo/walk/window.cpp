@@ -1,6 +1,6 @@
 #include "walk/window.hpp"
 
-#include "ask.hpp"
+#include "inspect.hpp"
 #include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/files.hpp"
@@ -111,8 +111,8 @@ bool WalkWindow::takeInput() {
     input_.mouseDelta = glm::dvec2(0.0);
     if (gizmo_.takeMoved()) ++state_.sceneVersion;
     changed();
-  } else if (state_.asksByClick && !pointing) {
-    if (left && !leftBefore_) state_.askedPlace = input_.cursor;
+  } else if (state_.inspectsByClick && !pointing) {
+    if (left && !leftBefore_) state_.inspectedPlace = input_.cursor;
     input_.mouseDelta = glm::dvec2(0.0);
   }
   leftBefore_ = left;
@@ -182,7 +182,7 @@ void WalkWindow::act(Action action) {
       s.show = static_cast<Show>((static_cast<int>(s.show) + 1) % static_cast<int>(kShowNames.size()));
       break;
     case Action::liveReference: s.liveReferenceOn = !s.liveReferenceOn; break;
-    case Action::ask: s.askedPlace = input_.cursor; break;
+    case Action::inspect: s.inspectedPlace = input_.cursor; break;
     case Action::fit:
       s.zoom = 1.0f;
       s.centre = glm::vec2(0.5f);
@@ -481,23 +481,23 @@ void WalkWindow::readPixel(const Compare::Inputs& inputs) {
   }
 }
 
-void WalkWindow::askPixel(const Compare::Inputs& inputs) {
-  if (!state_.askedPlace) return;
-  const glm::vec2 place(*std::exchange(state_.askedPlace, std::nullopt));
+void WalkWindow::inspectPixel(const Compare::Inputs& inputs) {
+  if (!state_.inspectedPlace) return;
+  const glm::vec2 place(*std::exchange(state_.inspectedPlace, std::nullopt));
   if (place.x < 0.0f || place.x >= static_cast<float>(view_.x)) return;
   const auto pixel = Compare::pictureAt(inputs, view_, place);
   if (!pixel) return;
-  state_.askedSide = inputs.layout == Layout::one ? state_.shown : Compare::isRight(inputs, view_, place) ? 1 : 0;
-  SideState& side = state_.sides[static_cast<std::size_t>(state_.askedSide)];
+  state_.inspectedSide = inputs.layout == Layout::one ? state_.shown : Compare::isRight(inputs, view_, place) ? 1 : 0;
+  SideState& side = state_.sides[static_cast<std::size_t>(state_.inspectedSide)];
   if (!side.renderer || side.shows == Shows::picture || *pixel != glm::min(*pixel, side.renderer->size() - 1)) return;
   try {
-    breathe("asking what lit the pixel");
+    breathe("inspecting the pixel");
     const gl::BuildWatch watch([this](const std::string& name) { breathe("compiling " + name); });
-    state_.answer = side.renderer->ask(programs_, state_.camera->camera(), *pixel);
-    state_.answer->condense(kAskedShares);
+    state_.answer = side.renderer->inspect(programs_, state_.camera->camera(), *pixel);
+    state_.answer->condense(kInspectedShares);
     state_.answerIsNew = true;
   } catch (const Error& error) { state_.say(error.what()); } catch (const Stopped&) {
-    state_.say("not asked");
+    state_.say("not inspected");
   }
 }
 
@@ -536,9 +536,9 @@ void WalkWindow::drawGizmo(const Compare::Inputs& inputs) {
 // Drawn over the picture of its side and hidden by the surfaces in that picture.
 void WalkWindow::drawLines(const Compare::Inputs& inputs) {
   if (!state_.answer || !state_.drawsAnswer) return;
-  const bool right = inputs.layout != Layout::one && state_.askedSide == 1;
-  if (inputs.layout == Layout::one && state_.askedSide != state_.shown) return;
-  const SideState& side = state_.sides[static_cast<std::size_t>(state_.askedSide)];
+  const bool right = inputs.layout != Layout::one && state_.inspectedSide == 1;
+  if (inputs.layout == Layout::one && state_.inspectedSide != state_.shown) return;
+  const SideState& side = state_.sides[static_cast<std::size_t>(state_.inspectedSide)];
   if (!side.renderer || side.shows == Shows::picture) return;
   const Renderer& renderer = *side.renderer;
   const gl::Lines::View view = renderer.linesView(state_.camera->camera(), state_.scene->bounds);
@@ -560,8 +560,8 @@ void WalkWindow::compose() {
                      state_.zoom == 1.0f && !state_.magnifier &&
                      radianceOf(state_.shown) == (shown.renderer ? &shown.renderer->radiance() : nullptr) &&
                      shown.renderer && shown.renderer->size() == view_;
-  presented_ = plain && !drawsUi() && !state_.shotWanted && !state_.askedPlace && !state_.answer && !state_.records &&
-               state_.glyphs == Glyphs::none && !state_.movesLamps && !video_ && view_ == window_;
+  presented_ = plain && !drawsUi() && !state_.shotWanted && !state_.inspectedPlace && !state_.answer &&
+               !state_.records && state_.glyphs == Glyphs::none && !state_.movesLamps && !video_ && view_ == window_;
   if (presented_) {
     host_.present(shown.renderer->displayFramebuffer().id(), window_);
     return;
@@ -619,7 +619,7 @@ void WalkWindow::compose() {
   if (plain) gl::copyTexels(shown.renderer->display(), {0, 0}, picture_, {0, 0}, view_);
   else if (inputs.left.radiance) compare_->record(pictureTarget_, view_, inputs);
   readPixel(inputs);
-  askPixel(inputs);
+  inspectPixel(inputs);
   drawGlyphs(inputs);
   drawGizmo(inputs);
   drawLines(inputs);

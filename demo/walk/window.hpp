@@ -49,7 +49,7 @@ class WalkWindow {
   bool allSettled() const;
   void compose();
   void readPixel(const Compare::Inputs& inputs);
-  void askPixel(const Compare::Inputs& inputs);
+  void inspectPixel(const Compare::Inputs& inputs);
   void drawLines(const Compare::Inputs& inputs);
   void drawGlyphs(const Compare::Inputs& inputs);
   void drawGizmo(const Compare::Inputs& inputs);

@@ -1,7 +1,7 @@
 // Inputs of the frame's techniques, at construction and in each frame (no GL calls).
 #pragma once
 
-#include "forward/asked_pixel.hpp"
+#include "forward/inspected_pixel.hpp"
 #include "forward/gpu_scene.hpp"
 #include "forward/light_views.hpp"
 #include "forward/sun_frustum.hpp"
@@ -55,10 +55,10 @@ struct FrameEffort {
 };
 
 /// A pixel of the last frame that is drawn again, to say what lit it.
-struct AskedPixel {
+struct InspectedPixel {
   gl::TimeQuery& timer;
   const FrameView& view;
-  const AskedTerms& terms;  ///< as shading recorded them
+  const InspectedTerms& terms;  ///< as shading recorded them
   glm::ivec2 fromBelow;
 };
 

@@ -6,7 +6,7 @@
 
 #include "frame/deviation.hpp"
 #include "frame/frame_parts.hpp"
-#include "frame/pixel_answer.hpp"
+#include "frame/pixel_inspection.hpp"
 #include "frame/setting.hpp"
 #include "frame/stage_picture.hpp"
 #include "gl/pass.hpp"
@@ -52,7 +52,7 @@ class FrameTechnique {
 
   // On request.
   /// Shares of the light that it adds at that pixel. The surface is in `answer`.
-  virtual void addShares(const AskedPixel&, PixelAnswer& /*answer*/) {}
+  virtual void addShares(const InspectedPixel&, PixelInspection& /*answer*/) {}
   virtual void addStagePictures(std::vector<StagePicture>&) const {}
   /// Names of its own stages that this scene and these settings do without.
   virtual void addLeftOut(std::vector<std::string>&) const {}
@@ -72,8 +72,8 @@ class GeometryTechnique : public FrameTechnique {
   };
   virtual std::span<const Sides> sides() const = 0;
   virtual const Scene& geometry() const = 0;
-  /// asked: the variant with which one pixel records its terms.
-  virtual SurfacePrograms surfacePrograms(bool asked) const = 0;
+  /// inspected: the variant with which one pixel records its terms.
+  virtual SurfacePrograms surfacePrograms(bool inspected) const = 0;
   /// Null: the frame's own tone mapping.
   virtual const gl::Program* toneMap() const { return nullptr; }
   virtual void draw(const gl::RasterPass&, const SurfacePrograms&, const FrameView&) = 0;
@@ -82,10 +82,10 @@ class GeometryTechnique : public FrameTechnique {
 /// One that makes the whole picture: no shadow maps, no depth, no surfaces are drawn.
 class PictureTechnique : public FrameTechnique {
  public:
-  /// `camera`: in the scene's coordinates, as for ask().
+  /// `camera`: in the scene's coordinates, as for inspect().
   virtual void recordPicture(gl::TimeQuery&, const Camera& camera, FrameEffort) = 0;
   /// `pixel`: from the top left.
-  virtual PixelAnswer ask(const Camera& camera, glm::ivec2 pixel) = 0;
+  virtual PixelInspection inspect(const Camera& camera, glm::ivec2 pixel) = 0;
 };
 
 /// The light of a technique's model, against which its error is measured.

@@ -47,7 +47,7 @@ std::unique_ptr<Host> Host::create(HostKind kind, const HostOptions& options) {
   // Works around two bugs of Mesa's zink, seen in 25.0 over a software Vulkan (docs/drivers.md); values already set in
   // the environment are kept. It compiles uniforms that branches depend on into the shader and runs a dispatch with
   // another's value (GlPasses.AUniformThatBranchesDependOnIsThatOfItsDispatch). And with descriptor buffers the first
-  // light propagation volume of a process reads wrong data (LpvBounces.AgainstTheTwin).
+  // light propagation volume of a process reads wrong data (LpvBounces.AgainstTheReference).
   ::setenv("ZINK_INLINE_UNIFORMS", "0", 0);
   ::setenv("ZINK_DESCRIPTORS", "lazy", 0);
   std::unique_ptr<Host> host;

@@ -353,18 +353,18 @@ void IrradianceCache::bindForLookup() const {
   irradiance_.bind(UNIT_CACHE);
 }
 
-std::vector<AskedPart> IrradianceCache::ask(const glm::vec3& position, const glm::vec3& normal) const {
-  const AskedParts parts(24 * MAX_CASCADES);
+std::vector<InspectedPart> IrradianceCache::inspect(const glm::vec3& position, const glm::vec3& normal) const {
+  const InspectedParts parts(24 * MAX_CASCADES);
   {
     const gl::Program& program =
-        programs_->loadCompute("cache ask records", "irradiance_cache/ask.comp", lookupFlags(settings_));
-    const gl::ComputePass pass("cache ask records");
+        programs_->loadCompute("cache inspect records", "irradiance_cache/inspect.comp", lookupFlags(settings_));
+    const gl::ComputePass pass("cache inspect records");
     program.use();
     bindRecords();
     bindForLookup();
     slotTable_.bind(kSlotsUnit);
-    program.set("askedPosition", position);
-    program.set("askedNormal", normal);
+    program.set("inspectedPosition", position);
+    program.set("inspectedNormal", normal);
     parts.bind();
     pass.dispatch(glm::ivec3(1), glm::ivec3(1));
   }

@@ -18,7 +18,7 @@
 #include "gl/context.hpp"
 #include "gl/pass.hpp"
 #include "gl/program.hpp"
-#include "forward/asked_pixel.hpp"
+#include "forward/inspected_pixel.hpp"
 #include "gl/read_back.hpp"
 #include "cascades/cascades.hpp"
 #include "irradiance_cache/light_gather.hpp"
@@ -72,7 +72,7 @@ class IrradianceCache {
 
   /// The contribution of each record to the lookup at a point in the frame's coordinates, with the mesh's normal.
   /// Compiles and allocates.
-  std::vector<AskedPart> ask(const glm::vec3& position, const glm::vec3& normal) const;
+  std::vector<InspectedPart> inspect(const glm::vec3& position, const glm::vec3& normal) const;
 
   /// A record as it is looked up.
   struct Shown {

@@ -92,10 +92,11 @@ bool IrradianceCacheFrame::lacksLight(std::size_t frames) const {
   return true;
 }
 
-void IrradianceCacheFrame::addShares(const AskedPixel& pixel, PixelAnswer& answer) {
+void IrradianceCacheFrame::addShares(const InspectedPixel& pixel, PixelInspection& answer) {
   const glm::dvec3 position = answer.surface->position, reflection = answer.surface->albedo / kPi;
   answer.isFiltered = true;
-  for (const AskedPart& part : cache_.ask(pixel.terms[ASKED_POSITION], pixel.terms[ASKED_MESH_NORMAL])) {
+  for (const InspectedPart& part :
+       cache_.inspect(pixel.terms[INSPECTED_POSITION], pixel.terms[INSPECTED_MESH_NORMAL])) {
     const std::string name =
         fmt::format("record {} {} {} of cascade {}", part.number.x, part.number.y, part.number.z, part.number.w + 1);
     if (answer.add("irradiance cache", name, reflection * glm::dvec3(part.irradiance),

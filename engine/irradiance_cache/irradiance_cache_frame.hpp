@@ -34,7 +34,7 @@ class IrradianceCacheFrame final : public FrameTechnique {
   bool lacksLight(std::size_t frames) const override;
   void forget() override;
 
-  void addShares(const AskedPixel& pixel, PixelAnswer& answer) override;
+  void addShares(const InspectedPixel& pixel, PixelInspection& answer) override;
   void addStagePictures(std::vector<StagePicture>& pictures) const override;
   void addLeftOut(std::vector<std::string>& names) const override;
   double largestIterations() const override { return cache_.mostIterations(); }

@@ -144,16 +144,16 @@ void LightPropagationVolume::bindForLookup() const {
   if (settings_.glossy) geometry_->potential().bind(UNIT_LPV_GEOMETRY);
 }
 
-std::vector<AskedPart> LightPropagationVolume::ask(gl::ProgramLibrary& programs, const glm::vec3& position,
-                                                   const glm::vec3& normal) const {
-  const AskedParts parts(8 * MAX_CASCADES);
+std::vector<InspectedPart> LightPropagationVolume::inspect(gl::ProgramLibrary& programs, const glm::vec3& position,
+                                                           const glm::vec3& normal) const {
+  const InspectedParts parts(8 * MAX_CASCADES);
   {
-    const gl::Program& program = programs.loadCompute("lpv ask", "lpv/ask.comp", lookupFlags(settings_));
-    const gl::ComputePass pass("lpv ask");
+    const gl::Program& program = programs.loadCompute("lpv inspect", "lpv/inspect.comp", lookupFlags(settings_));
+    const gl::ComputePass pass("lpv inspect");
     program.use();
     bindForLookup();
-    program.set("askedPosition", position);
-    program.set("askedNormal", normal);
+    program.set("inspectedPosition", position);
+    program.set("inspectedNormal", normal);
     parts.bind();
     pass.dispatch(glm::ivec3(1), glm::ivec3(1));
   }

@@ -2,7 +2,7 @@
 // See README.md in this folder for inputs, outputs, units, sources and measurements.
 #pragma once
 
-#include "forward/asked_pixel.hpp"
+#include "forward/inspected_pixel.hpp"
 #include "gl/context.hpp"
 #include "gl/program.hpp"
 #include "lpv/cascade_join.hpp"
@@ -38,7 +38,8 @@ class LightPropagationVolume {
 
   /// The contribution of each cell to the lookup at a point in the frame's coordinates; outside the volume there is
   /// none. `normal`: for shading. Compiles and allocates.
-  std::vector<AskedPart> ask(gl::ProgramLibrary& programs, const glm::vec3& position, const glm::vec3& normal) const;
+  std::vector<InspectedPart> inspect(gl::ProgramLibrary& programs, const glm::vec3& position,
+                                     const glm::vec3& normal) const;
 
   const LpvVolume& injected() const { return injection_.volume(); }
   /// The sum G_0 + ... + G_iterations; after join(), of all cascades together.

@@ -172,18 +172,19 @@ void LpvFrame::bindForShading() const {
   if (lobes_) lobes_->bind();
 }
 
-void LpvFrame::addShares(const AskedPixel& pixel, PixelAnswer& answer) {
+void LpvFrame::addShares(const InspectedPixel& pixel, PixelInspection& answer) {
   if (volume_) addVolumeShares(pixel, answer);
   if (shafts_)
     answer.add("medium", "light shafts, less what the medium takes",
-               answer.radiance - glm::dvec3(pixel.terms[ASKED_RADIANCE]));
+               answer.radiance - glm::dvec3(pixel.terms[INSPECTED_RADIANCE]));
 }
 
-void LpvFrame::addVolumeShares(const AskedPixel& pixel, PixelAnswer& answer) {
+void LpvFrame::addVolumeShares(const InspectedPixel& pixel, PixelInspection& answer) {
   const glm::dvec3 position = answer.surface->position, reflection = answer.surface->albedo / kPi;
   answer.isFiltered = true;
   std::map<int, glm::dvec3> ofCascade;
-  for (const AskedPart& part : volume_->ask(parts_.programs, pixel.terms[ASKED_POSITION], pixel.terms[ASKED_NORMAL])) {
+  for (const InspectedPart& part :
+       volume_->inspect(parts_.programs, pixel.terms[INSPECTED_POSITION], pixel.terms[INSPECTED_NORMAL])) {
     const glm::dvec3 irradiance(part.irradiance);
     ofCascade.try_emplace(part.number.w, 0.0).first->second += irradiance;
     const std::string name =
@@ -196,7 +197,7 @@ void LpvFrame::addVolumeShares(const AskedPixel& pixel, PixelAnswer& answer) {
   glm::dvec3 cut(0.0);  // the lookup clamps each channel of a cascade at 0
   for (const auto& [cascade, sum] : ofCascade) cut += glm::max(sum, glm::dvec3(0.0)) - sum;
   answer.add("lpv", "light below 0, cut off", reflection * cut, {position});
-  answer.add("lpv", "glossy reflection", glm::dvec3(pixel.terms[ASKED_GLOSSY]), {position});
+  answer.add("lpv", "glossy reflection", glm::dvec3(pixel.terms[INSPECTED_GLOSSY]), {position});
 }
 
 void LpvFrame::addStagePictures(std::vector<StagePicture>& pictures) const {

@@ -33,7 +33,7 @@ class LpvFrame final : public FrameTechnique {
   void addToPicture(gl::TimeQuery& timer, const FrameView& view) override;
   void forget() override;
 
-  void addShares(const AskedPixel& pixel, PixelAnswer& answer) override;
+  void addShares(const InspectedPixel& pixel, PixelInspection& answer) override;
   void addStagePictures(std::vector<StagePicture>& pictures) const override;
   void addLeftOut(std::vector<std::string>& names) const override;
   /// Estimated iterations of the largest submission (gl/chunks.hpp): filling from a map, or a step of propagation.
@@ -45,7 +45,7 @@ class LpvFrame final : public FrameTechnique {
   const LightPropagationVolume* volume() const { return volume_ ? &*volume_ : nullptr; }
 
  private:
-  void addVolumeShares(const AskedPixel& pixel, PixelAnswer& answer);
+  void addVolumeShares(const InspectedPixel& pixel, PixelInspection& answer);
   std::vector<ReflectiveShadowMap::Outputs> recordCameraMap(gl::TimeQuery& timer,
                                                             const Camera& camera);  ///< empty if not needed
   const LpvSettings& settings() const { return parts_.settings.of<LpvSettings>(); }

@@ -47,8 +47,8 @@ LpvComputePropagation::LpvComputePropagation(gl::ProgramLibrary& programs, const
   const auto buffer = [&](const char* name) {
     return lpvBuffer(capabilities, name, gl::Format::rgba32f, grid.volumeBytes());
   };
-  if (!haveCounts) fronts_[0] = buffer("lpv front even");
-  fronts_[1] = buffer("lpv front odd");
+  if (!haveCounts) wavefronts_[0] = buffer("lpv front even");
+  wavefronts_[1] = buffer("lpv front odd");
   sums_ = buffer("lpv sums");
   if (settings.joins()) farSums_ = buffer("lpv far sums");
   const int bricksOfAxis = (settings.cascades.cells + kBrick - 1) / kBrick;
@@ -58,11 +58,12 @@ LpvComputePropagation::LpvComputePropagation(gl::ProgramLibrary& programs, const
 }
 
 void LpvComputePropagation::run(const LpvVolume& source, LpvInjection& injection, const LpvGeometryVolume* geometry) {
-  const std::array<gl::BufferTexture*, 2> fronts{injection.counts() ? injection.counts() : &fronts_[0], &fronts_[1]};
+  const std::array<gl::BufferTexture*, 2> wavefronts{injection.counts() ? injection.counts() : &wavefronts_[0],
+                                                     &wavefronts_[1]};
   const bool begun = injection.takeCounts();  // the second step overwrites them
   setAmplifier(settings_, {first_, further_});
   // Cells without a dispatched brick are never written, so they must be dark.
-  fronts[1]->clear();
+  wavefronts[1]->clear();
   sums_.clear();
   if (settings_.joins()) farSums_.clear();
   bricks_.clear();
@@ -72,14 +73,14 @@ void LpvComputePropagation::run(const LpvVolume& source, LpvInjection& injection
     const gl::ComputePass pass("lpv begin", gl::Barrier::textureFetch);
     begin_->use();
     for (GLuint channel = 0; channel < 3; ++channel) source[channel].bind(channel);
-    fronts[0]->buffer().bindStorage(kLpvFrontBuffer);
+    wavefronts[0]->buffer().bindStorage(kLpvFrontBuffer);
     pass.dispatch(size_, kLpvGroup);
   }
   {
     const gl::ComputePass pass("lpv mark bricks", gl::Barrier::storage);
     markBricks_->use();
     markBricks_->set("everywhere", settings_.everyBrick ? 1 : 0);
-    fronts[0]->bind(0);
+    wavefronts[0]->bind(0);
     pass.dispatch(size_, kLpvGroup);
   }
   if (geometry) geometry->faces().bind(1);
@@ -93,9 +94,9 @@ void LpvComputePropagation::run(const LpvVolume& source, LpvInjection& injection
     const gl::ComputePass pass("lpv propagate", gl::Barrier::textureFetch | gl::Barrier::storage);
     (step == 0 ? first_ : further_)->use();
     const gl::BufferTexture& sums = settings_.joins() && step >= settings_.handOver ? farSums_ : sums_;
-    fronts[static_cast<std::size_t>(step % 2)]->bind(0);
+    wavefronts[static_cast<std::size_t>(step % 2)]->bind(0);
     sums.bind(2);
-    fronts[static_cast<std::size_t>((step + 1) % 2)]->buffer().bindStorage(kNextBuffer);
+    wavefronts[static_cast<std::size_t>((step + 1) % 2)]->buffer().bindStorage(kNextBuffer);
     sums.buffer().bindStorage(kSumBuffer);
     pass.dispatchIndirect(bricks_);
   }
@@ -107,7 +108,7 @@ void LpvComputePropagation::bindSums() const {
 }
 
 std::size_t LpvComputePropagation::gpuBytes() const {
-  return fronts_[0].bytes() + fronts_[1].bytes() + sums_.bytes() + farSums_.bytes() + bricks_.bytes();
+  return wavefronts_[0].bytes() + wavefronts_[1].bytes() + sums_.bytes() + farSums_.bytes() + bricks_.bytes();
 }
 
 // ---------------------------------------------------------------------------------------------- layered
@@ -129,9 +130,9 @@ LpvLayeredPropagation::LpvLayeredPropagation(gl::ProgramLibrary& programs, const
   sum_ = lpvVolume("sum", grid.summed, grid.size, kLpvSampling);
   if (settings.joins()) farSum_ = lpvVolume("far sum", grid.summed, grid.size, kLpvSampling);
   for (std::size_t i = 0; i < (settings.steps() > 1 ? 2u : 1u); ++i) {
-    fronts_[i] = lpvVolume(i == 0 ? "front even" : "front odd", grid.summed, grid.size, kLpvSampling);
+    wavefronts_[i] = lpvVolume(i == 0 ? "front even" : "front odd", grid.summed, grid.size, kLpvSampling);
     for (std::size_t far = 0; far < (settings.joins() ? 2u : 1u); ++far) {
-      const LpvVolume& front = fronts_[i];
+      const LpvVolume& front = wavefronts_[i];
       const LpvVolume& sum = far ? farSum_ : sum_;
       const std::array<const gl::Texture*, 6> targets{&front[0], &front[1], &front[2], &sum[0], &sum[1], &sum[2]};
       targets_[i][far] = gl::Framebuffer("lpv propagate layered", targets);
@@ -165,7 +166,7 @@ void LpvLayeredPropagation::run(const LpvVolume& source, const LpvGeometryVolume
       program.set("cells", cells);
       gl::drawPoints(cells * cells * cells);
     }
-    front = &fronts_[next];
+    front = &wavefronts_[next];
   }
 }
 
@@ -177,7 +178,7 @@ void LpvLayeredPropagation::bindSums() const {
 }
 
 std::size_t LpvLayeredPropagation::gpuBytes() const {
-  return bytesOf(sum_) + bytesOf(farSum_) + bytesOf(fronts_[0]) + bytesOf(fronts_[1]);
+  return bytesOf(sum_) + bytesOf(farSum_) + bytesOf(wavefronts_[0]) + bytesOf(wavefronts_[1]);
 }
 
 }  // namespace lucerna

@@ -35,7 +35,7 @@ class LpvComputePropagation {
   const gl::Program* listBricks_ = nullptr;
   const gl::Program* first_ = nullptr;
   const gl::Program* further_ = nullptr;  ///< with blocking, if it is on
-  std::array<gl::BufferTexture, 2> fronts_;  ///< the first one only if there are no counts
+  std::array<gl::BufferTexture, 2> wavefronts_;  ///< the first one only if there are no counts
   gl::BufferTexture sums_, farSums_;  ///< of the first steps and, with joined cascades, those after the hand-over
   gl::Buffer bricks_;  ///< reached by light (lpv/bricks.glsl)
 };
@@ -56,7 +56,7 @@ class LpvLayeredPropagation {
   const gl::Program* first_ = nullptr;
   const gl::Program* further_ = nullptr;  ///< with blocking, if it is on
   gl::VertexArray noAttributes_;
-  std::array<LpvVolume, 2> fronts_;
+  std::array<LpvVolume, 2> wavefronts_;
   LpvVolume sum_, farSum_;  ///< of the first steps and, with joined cascades, those after the hand-over
   std::array<std::array<gl::Framebuffer, 2>, 2> targets_;  ///< front x (sum, far sum)
 };

@@ -28,7 +28,7 @@ bool isNeeded(const Scene& scene, std::string_view need) {
 
 }  // namespace
 
-const std::vector<std::string>& neutralNeeds() {
+const std::vector<std::string>& neutralFeatures() {
   static const std::vector<std::string> names{"diffuseTextures", "alphaMasks",       "specular",           "emission",
                                               "background",      "environment",      "environmentPicture", "spotLights",
                                               "pointLights",     "emissionTextures", "normalMaps",         "metalMaps"};

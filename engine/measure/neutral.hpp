@@ -11,7 +11,7 @@
 namespace lucerna::measure {
 
 /// The needs of SceneFeatures for which neutral data exist.
-const std::vector<std::string>& neutralNeeds();
+const std::vector<std::string>& neutralFeatures();
 /// Adds the data that cause the need: a white texture, a mask that cuts nothing out, a light of 1e-30. No effect if the
 /// need already exists or nothing is drawn.
 void addNeutral(Scene& scene, std::string_view need);

@@ -41,7 +41,7 @@ glm::uvec4 wordsOf(const glm::vec3& v, std::uint32_t w) {
 /// Variance of a pixel's mean. Rounding may make a sum of squares slightly negative.
 glm::dvec3 meanVariance(const FilmPixel& p) {
   const double n = p.samples;
-  return p.samples < 2 ? glm::dvec3(0.0) : glm::max(glm::dvec3(p.spread), glm::dvec3(0.0)) / (n * (n - 1.0));
+  return p.samples < 2 ? glm::dvec3(0.0) : glm::max(glm::dvec3(p.m2), glm::dvec3(0.0)) / (n * (n - 1.0));
 }
 
 template <class Value>
@@ -85,7 +85,7 @@ glm::vec3 standardErrorOf(const FilmPixel& pixel) { return glm::vec3(glm::sqrt(m
 
 std::vector<FilmPixel> Film::pixels() const {
   std::vector<FilmPixel> result(mean.size());
-  for (std::size_t i = 0; i < mean.size(); ++i) result[i] = {floatsOf(mean[i]), floatsOf(spread[i]), mean[i].w};
+  for (std::size_t i = 0; i < mean.size(); ++i) result[i] = {floatsOf(mean[i]), floatsOf(m2[i]), mean[i].w};
   return result;
 }
 Image Film::picture() const {
@@ -111,7 +111,7 @@ Film filmOf(std::span<const std::uint8_t> bytes, const std::string& name) {
   film.size = {static_cast<int>(header.width), static_cast<int>(header.height)};
   film.first = header.first;
   const std::uint8_t* from = bytes.data() + sizeof header;
-  for (std::vector<glm::uvec4>* words : {&film.mean, &film.spread, &film.rest}) {
+  for (std::vector<glm::uvec4>* words : {&film.mean, &film.m2, &film.rest}) {
     words->resize(texels);
     std::memcpy(static_cast<void*>(words->data()), from, plane);
     from += plane;
@@ -126,7 +126,7 @@ std::vector<std::uint8_t> bytesOf(const Film& film) {
   header.height = static_cast<std::uint32_t>(film.size.y);
   header.first = film.first;
   std::vector<std::uint8_t> bytes(sizeof header);
-  for (const std::vector<glm::uvec4>* words : {&film.mean, &film.spread, &film.rest}) {
+  for (const std::vector<glm::uvec4>* words : {&film.mean, &film.m2, &film.rest}) {
     const auto* begin = reinterpret_cast<const std::uint8_t*>(words->data());
     bytes.insert(bytes.end(), begin, begin + words->size() * sizeof(glm::uvec4));
   }
@@ -154,7 +154,7 @@ void FilmMerge::add(const Film& film, const std::string& name) {
     headName_ = name;
     next_ = film.first;
     mean_.assign(film.mean.size(), glm::dvec3(0.0));
-    spread_ = mean_;
+    m2_ = mean_;
   }
   if (film.size != head_.size)
     throwBadInput("{}: {} x {} pixels; {} has {} x {}", name, film.size.x, film.size.y, headName_, head_.size.x,
@@ -170,7 +170,7 @@ void FilmMerge::add(const Film& film, const std::string& name) {
   for (std::size_t i = 0; i < mean_.size(); ++i) {
     const glm::dvec3 own = glm::dvec3(floatsOf(film.mean[i])) + glm::dvec3(floatsOf(film.rest[i])),
                      difference = own - mean_[i];
-    spread_[i] += glm::dvec3(floatsOf(film.spread[i])) + difference * difference * (n * m / all);
+    m2_[i] += glm::dvec3(floatsOf(film.m2[i])) + difference * difference * (n * m / all);
     mean_[i] += difference * (m / all);
   }
   next_ += samples;
@@ -185,7 +185,7 @@ Film FilmMerge::result() const {
     const glm::vec3 high(mean_[i]);
     result.mean[i] = wordsOf(high, static_cast<std::uint32_t>(next_ - head_.first));
     result.rest[i] = wordsOf(glm::vec3(mean_[i] - glm::dvec3(high)), head_.rest[i].w);
-    result.spread[i] = wordsOf(glm::vec3(spread_[i]), head_.spread[i].w);
+    result.m2[i] = wordsOf(glm::vec3(m2_[i]), head_.m2[i].w);
   }
   return result;
 }

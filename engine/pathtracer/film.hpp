@@ -18,7 +18,7 @@ namespace lucerna {
 
 struct FilmPixel {
   glm::vec3 mean;
-  glm::vec3 spread;  ///< sum of squared deviations from the mean [Welford1962]
+  glm::vec3 m2;  ///< sum of squared deviations from the mean [Welford1962]
   std::uint32_t samples = 0;
 };
 
@@ -41,7 +41,7 @@ struct Film {
   std::uint32_t first = 0;  ///< number of the first sample
   /// Bits of floats as words, bottom row first: mean and, in w, the number of samples; sum of squared deviations; the
   /// mean's low part below a float's last place.
-  std::vector<glm::uvec4> mean, spread, rest;
+  std::vector<glm::uvec4> mean, m2, rest;
 
   std::vector<FilmPixel> pixels() const;
   Image picture() const;  ///< top row first
@@ -72,7 +72,7 @@ class FilmMerge {
   std::string headName_, before_;
   std::uint64_t next_ = 0;
   int films_ = 0;
-  std::vector<glm::dvec3> mean_, spread_;
+  std::vector<glm::dvec3> mean_, m2_;
 };
 
 }  // namespace lucerna

@@ -1,7 +1,7 @@
 #include "pathtracer/path_frame.hpp"
 
 #include "gl/pass.hpp"
-#include "pathtracer/ask_paths.hpp"
+#include "pathtracer/inspect_paths.hpp"
 
 #include <algorithm>
 
@@ -57,11 +57,11 @@ void PathFrame::recordPicture(gl::TimeQuery& timer, const Camera& camera, FrameE
   gl::drawFullScreen(parts_.noAttributes);
 }
 
-PixelAnswer PathFrame::ask(const Camera& camera, glm::ivec2 pixel) {
+PixelInspection PathFrame::inspect(const Camera& camera, glm::ivec2 pixel) {
   constexpr std::uint32_t kMostSamples = 4096;
   const std::uint32_t samples = tracer_.samples() > 0 ? tracer_.samples() : settings().samples;
-  return askPaths(parts_.context, parts_.programs, parts_.scene, camera, tracer_.settings(),
-                  std::min(samples, kMostSamples), pixel);
+  return inspectPaths(parts_.context, parts_.programs, parts_.scene, camera, tracer_.settings(),
+                      std::min(samples, kMostSamples), pixel);
 }
 
 }  // namespace lucerna

@@ -19,7 +19,7 @@ class PathFrame final : public PictureTechnique {
   void recordPicture(gl::TimeQuery& timer, const Camera& camera, FrameEffort effort) override;
   void forget() override { hasView_ = false; }
   bool isSettled() const override { return settled_; }
-  PixelAnswer ask(const Camera& camera, glm::ivec2 pixel) override;
+  PixelInspection inspect(const Camera& camera, glm::ivec2 pixel) override;
   std::size_t gpuBytes() const override { return tracer_.gpuBytes(); }
 
   const PathTracer& tracer() const { return tracer_; }

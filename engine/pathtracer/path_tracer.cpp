@@ -36,11 +36,11 @@ struct StateHeader {
                 padding[2]{};
 };
 constexpr std::size_t kStateHeaderBytes = sizeof(StateHeader), kVec4Bytes = 16;
-constexpr std::size_t kPathWords = 6, kParkedWords = 8, kParkedInteriorWords = 17;  // STATE_WORDS of path.glsl
-/// For the queried pixel: room for the light contributions of a pass of kAskedSamples.
-constexpr std::size_t kAskedHead = 1 + PATH_ASKED_PLACES, kAskedRecords = 32768,
-                      kAskedWords = kAskedHead + kAskedRecords * PATH_ASKED_RECORD;
-constexpr std::uint32_t kAskedSamples = 64;
+constexpr std::size_t kPathWords = 6, kSpilledWords = 8, kSpilledInteriorWords = 17;  // STATE_WORDS of path.glsl
+/// For the inspected pixel: room for the light contributions of a pass of kInspectedSamples.
+constexpr std::size_t kInspectedHead = 1 + PATH_INSPECTED_PLACES, kInspectedRecords = 32768,
+                      kInspectedWords = kInspectedHead + kInspectedRecords * PATH_INSPECTED_RECORD;
+constexpr std::uint32_t kInspectedSamples = 64;
 
 /// Whether every lamp is in the open, where the index is 1. Conservative: emissive triangles are tested by bounding
 /// box.
@@ -143,16 +143,16 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
 }
 
 void PathTracer::allocateFilm() {
-  const glm::ivec2 tile = settings_.askedPixel ? glm::ivec2(1) : glm::min(settings_.size, glm::ivec2(tileSide_));
+  const glm::ivec2 tile = settings_.inspectedPixel ? glm::ivec2(1) : glm::min(settings_.size, glm::ivec2(tileSide_));
   // Of whole groups.
   const glm::ivec2 groups = (tile + kGroupSide - 1) / kGroupSide;
   const std::size_t lanes = static_cast<std::size_t>(groups.x * groups.y) * kGroupSide * kGroupSide;
   constants_.picture = glm::ivec4(settings_.size, static_cast<int>(lanes), 0);
-  const std::size_t asked = settings_.askedPixel ? kAskedWords : 0;
-  state_ = gl::Buffer("path state", kStateHeaderBytes + (lanes * stateWords() + asked) * kVec4Bytes, nullptr,
+  const std::size_t inspection = settings_.inspectedPixel ? kInspectedWords : 0;
+  state_ = gl::Buffer("path state", kStateHeaderBytes + (lanes * stateWords() + inspection) * kVec4Bytes, nullptr,
                       gl::Usage::dynamicCopy);
   filmMean_ = gl::Texture("film mean", gl::Format::rgba32ui, settings_.size);
-  filmSpread_ = gl::Texture("film spread", gl::Format::rgba32ui, settings_.size);
+  filmM2_ = gl::Texture("film M2", gl::Format::rgba32ui, settings_.size);
   filmRest_ = gl::Texture("film rest", gl::Format::rgba32ui, settings_.size);
   for (gl::Texture& texture : kept_) texture = gl::Texture("film kept", gl::Format::rgba32ui, tile);
 }
@@ -199,14 +199,14 @@ gl::ShaderFlags PathTracer::flags() const {
 
 std::size_t PathTracer::stateWords() const {
   if (scene_->rays().sharedStack() == 0) return kPathWords;
-  return hasInteriors() ? kParkedInteriorWords : kParkedWords;
+  return hasInteriors() ? kSpilledInteriorWords : kSpilledWords;
 }
 
 gl::ShaderFlags PathTracer::kernelFlags() const {
   gl::ShaderFlags all = flags();
   all.insert(all.end(), {{"SHARED_STACK", scene_->rays().sharedStack()},
                          {"STATE_WORDS", static_cast<int>(stateWords())},
-                         {"ASKED", settings_.askedPixel.has_value()},
+                         {"INSPECTED", settings_.inspectedPixel.has_value()},
                          {"SHADOW_AT_ONCE", scene_->rays().sharedStack() == 0 && !hasInteriors()}});
   return all;
 }
@@ -258,7 +258,7 @@ void PathTracer::setCamera(const Camera& camera) {
     cameraIor_ = iorInside(boundaries_, cameraInside_);
   }
   leakedPaths_ = wrongCrossings_ = iterationsTaken_ = collisions_ = 0.0;
-  const std::array<const gl::Texture*, 3> film{&filmMean_, &filmSpread_, &filmRest_};
+  const std::array<const gl::Texture*, 3> film{&filmMean_, &filmM2_, &filmRest_};
   gl::clearToZero(film, clearTexture_);
   constants_.picture.w = 0;
   done_ = passTarget_ = 0;
@@ -290,8 +290,8 @@ std::vector<std::uint8_t> PathTracer::checkpoint() const {
   film.identity = identity();
   film.size = settings_.size;
   film.first = static_cast<std::uint32_t>(constants_.picture.w);
-  const std::array<const gl::Texture*, 3> films{&filmMean_, &filmSpread_, &filmRest_};
-  const std::array<std::vector<glm::uvec4>*, 3> planes{&film.mean, &film.spread, &film.rest};
+  const std::array<const gl::Texture*, 3> films{&filmMean_, &filmM2_, &filmRest_};
+  const std::array<std::vector<glm::uvec4>*, 3> planes{&film.mean, &film.m2, &film.rest};
   for (std::size_t f = 0; f < films.size(); ++f) {
     std::vector<glm::uvec4>& words = *planes[f];
     words = films[f]->readWords();
@@ -312,7 +312,7 @@ void PathTracer::resume(const std::vector<std::uint8_t>& bytes, const std::strin
                   settings_.size.x, settings_.size.y);
   if (film.identity != identity()) throwBadInput("{}: a checkpoint of another scene, view or setting", name);
   filmMean_.upload(gl::Texels::rgbaWord, film.mean.data());
-  filmSpread_.upload(gl::Texels::rgbaWord, film.spread.data());
+  filmM2_.upload(gl::Texels::rgbaWord, film.m2.data());
   filmRest_.upload(gl::Texels::rgbaWord, film.rest.data());
   constants_.picture.w = static_cast<int>(film.first);
   done_ = kUnlimited;
@@ -323,7 +323,7 @@ void PathTracer::resume(const std::vector<std::uint8_t>& bytes, const std::strin
 }
 
 PathTracer::Tile PathTracer::tile() const {
-  if (settings_.askedPixel) return {*settings_.askedPixel, glm::ivec2(1)};
+  if (settings_.inspectedPixel) return {*settings_.inspectedPixel, glm::ivec2(1)};
   const int columns = (settings_.size.x + tileSide_ - 1) / tileSide_;
   const glm::ivec2 corner = tileSide_ * glm::ivec2(tile_ % columns, tile_ / columns);
   return {corner, glm::min(glm::ivec2(tileSide_), settings_.size - corner)};
@@ -331,27 +331,28 @@ PathTracer::Tile PathTracer::tile() const {
 
 int PathTracer::tileCount() const {
   const glm::ivec2 tiles = (settings_.size + tileSide_ - 1) / tileSide_;
-  return settings_.askedPixel ? 1 : tiles.x * tiles.y;
+  return settings_.inspectedPixel ? 1 : tiles.x * tiles.y;
 }
 
 // The layout is that of shared/path_tracer.h.
-void PathTracer::readAsked() {
+void PathTracer::readInspected() {
   const std::vector<glm::uvec4> words = state_.read<glm::uvec4>();
   const std::size_t base =
       kStateHeaderBytes / kVec4Bytes + stateWords() * static_cast<std::size_t>(constants_.picture.z);
-  const std::size_t told = words[base].x, kept = std::min(told, kAskedRecords);
-  if (kept < told) logWarning("{} of {} lights of the queried pixel did not fit", told - kept, told);
+  const std::size_t told = words[base].x, kept = std::min(told, kInspectedRecords);
+  if (kept < told) logWarning("{} of {} lights of the inspected pixel did not fit", told - kept, told);
   const auto place = [&](std::size_t i) {
     return glm::dvec3(std::bit_cast<float>(words[i].x), std::bit_cast<float>(words[i].y),
                       std::bit_cast<float>(words[i].z));
   };
   for (std::size_t r = 0; r < kept; ++r) {
-    const std::size_t at = base + kAskedHead + r * PATH_ASKED_RECORD, end = at + 2 + PATH_ASKED_PLACES;
+    const std::size_t at = base + kInspectedHead + r * PATH_INSPECTED_RECORD, end = at + 2 + PATH_INSPECTED_PLACES;
     const glm::uvec4 about = words[at + 1];
-    AskedLight light{glm::vec3(place(at)), words[at].w, about.x, about.y, about.z, {}, place(end), words[end].w != 0};
+    InspectedLight light{glm::vec3(place(at)), words[at].w,      about.x, about.y, about.z, {},
+                         place(end),           words[end].w != 0};
     for (std::size_t i = 0; i < about.w; ++i) light.places.push_back(place(at + 2 + i) + scene_->origin());
     if (!light.infinite) light.end += scene_->origin();
-    asked_.push_back(std::move(light));
+    inspected_.push_back(std::move(light));
   }
 }
 
@@ -359,7 +360,7 @@ void PathTracer::dropUnfinishedPass() {
   if (!tileBegun_) return;
   const auto [corner, size] = tile();
   gl::copyTexels(kept_[0], {0, 0}, filmMean_, corner, size);
-  gl::copyTexels(kept_[1], {0, 0}, filmSpread_, corner, size);
+  gl::copyTexels(kept_[1], {0, 0}, filmM2_, corner, size);
   gl::copyTexels(kept_[2], {0, 0}, filmRest_, corner, size);
   tileBegun_ = false;
 }
@@ -370,7 +371,7 @@ bool PathTracer::submit(std::uint32_t samples, Passes passes) {
   if (passTarget_ == done_ || passTarget_ > samples) {
     // At the end of a pass, lanes wait for the last path of a tile. With passes that double the samples they wait
     // rarely, and pictures still come early.
-    const std::uint32_t most = settings_.askedPixel ? kAskedSamples : features_.media ? 1024 : 64;
+    const std::uint32_t most = settings_.inspectedPixel ? kInspectedSamples : features_.media ? 1024 : 64;
     passTarget_ = done_ + std::min(samples - done_, passes == Passes::whole ? most : std::clamp(done_, 1u, most));
     if (!tileBegun_) tile_ = 0;
   }
@@ -382,7 +383,7 @@ bool PathTracer::submit(std::uint32_t samples, Passes passes) {
     iterations_.restart();
     iterations_.setIterationsOfUnit(lanes);
     gl::copyTexels(filmMean_, corner, kept_[0], {0, 0}, size);
-    gl::copyTexels(filmSpread_, corner, kept_[1], {0, 0}, size);
+    gl::copyTexels(filmM2_, corner, kept_[1], {0, 0}, size);
     gl::copyTexels(filmRest_, corner, kept_[2], {0, 0}, size);
   }
   const StateHeader zeros{};
@@ -405,7 +406,7 @@ bool PathTracer::submit(std::uint32_t samples, Passes passes) {
   iterations_.setIterationsOfUnit(std::max(unfinished, 1u));  // the others are finished
   iterations_.took(iterations_.units(), seconds);
   tileBegun_ = unfinished > 0;
-  if (!tileBegun_ && settings_.askedPixel) readAsked();
+  if (!tileBegun_ && settings_.inspectedPixel) readInspected();
   if (!tileBegun_ && ++tile_ == tileCount()) {
     done_ = passTarget_;
     tile_ = 0;
@@ -438,18 +439,18 @@ void PathTracer::dispatch(glm::ivec2 corner, glm::ivec2 size, std::uint32_t targ
     densities_.bindStorage(kDensitiesBinding);
   }
   filmMean_.bindImage(0, gl::Access::readWrite);
-  filmSpread_.bindImage(1, gl::Access::readWrite);
+  filmM2_.bindImage(1, gl::Access::readWrite);
   filmRest_.bindImage(2, gl::Access::readWrite);
   pass.dispatch(glm::ivec3(size, 1), glm::ivec3(kGroupSide, kGroupSide, 1));
 }
 
 std::vector<PathTracer::Pixel> PathTracer::readFilm() const {
-  const std::vector<glm::uvec4> mean = filmMean_.readWords(), spread = filmSpread_.readWords();
+  const std::vector<glm::uvec4> mean = filmMean_.readWords(), m2 = filmM2_.readWords();
   std::vector<Pixel> pixels(mean.size());
   const auto floats = [](const glm::uvec4& w) {
     return glm::vec3(std::bit_cast<float>(w.x), std::bit_cast<float>(w.y), std::bit_cast<float>(w.z));
   };
-  for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] = {floats(mean[i]), floats(spread[i]), mean[i].w};
+  for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] = {floats(mean[i]), floats(m2[i]), mean[i].w};
   return pixels;
 }
 
@@ -471,14 +472,12 @@ Image PathTracer::mean() const {
 }
 
 Image PathTracer::standardError() const {
-  return toImage(readFilm(), settings_.size, [](const Pixel& p) {
-    return standardErrorOf({p.mean, p.spread, p.samples});
-  });
+  return toImage(readFilm(), settings_.size, [](const Pixel& p) { return standardErrorOf({p.mean, p.m2, p.samples}); });
 }
 
 PathTracer::Statistics PathTracer::statistics() const {
   std::vector<FilmPixel> pixels;
-  for (const Pixel& p : readFilm()) pixels.push_back({p.mean, p.spread, p.samples});
+  for (const Pixel& p : readFilm()) pixels.push_back({p.mean, p.m2, p.samples});
   const FilmStatistics film = statisticsOf(pixels);
   Statistics result;
   result.fewestSamples = film.fewestSamples;
@@ -498,7 +497,7 @@ PathTracer::Statistics PathTracer::statistics() const {
 std::size_t PathTracer::gpuBytes() const {
   std::size_t bytes = scene_->gpuBytes() + state_.bytes() + counters_.bytes() + constantsBuffer_.bytes() +
                       media_.bytes() + interiors_.bytes() + grids_.bytes() + densities_.bytes() + clearances_.bytes() +
-                      filmMean_.bytes() + filmSpread_.bytes() + filmRest_.bytes();
+                      filmMean_.bytes() + filmM2_.bytes() + filmRest_.bytes();
   for (const gl::Texture& texture : kept_) bytes += texture.bytes();
   return bytes;
 }

@@ -48,14 +48,14 @@ class PathTracer {
     RayScene::Settings rays;
     PathDeviations deviations;
     /// The only pixel of the picture to trace, counted from the lower left; its light contributions are kept for
-    /// takeAsked().
-    std::optional<glm::ivec2> askedPixel;
+    /// takeInspected().
+    std::optional<glm::ivec2> inspectedPixel;
   };
-  /// Light that one path has brought to the queried pixel.
-  struct AskedLight {
+  /// Light that one path has brought to the inspected pixel.
+  struct InspectedLight {
     glm::vec3 radiance;  ///< of that sample; the pixel's is the sum over samples divided by their number
     std::uint32_t sample, scatterings;
-    std::uint32_t kind, number;  ///< PATH_LIGHT_* or PATH_ASKED_*; index of the triangle or of the table's light
+    std::uint32_t kind, number;  ///< PATH_LIGHT_* or PATH_INSPECTED_*; index of the triangle or of the table's light
     std::vector<glm::dvec3> places;  ///< the camera and the first scatterings, in the scene's coordinates
     glm::dvec3 end;  ///< the light's position; at infinity the direction to it
     bool infinite;
@@ -98,8 +98,8 @@ class PathTracer {
   /// the film.
   void dropUnfinishedPass();
 
-  /// With Settings::askedPixel: all contributions of samples computed since the last call.
-  std::vector<AskedLight> takeAsked() { return std::exchange(asked_, {}); }
+  /// With Settings::inspectedPixel: all contributions of samples computed since the last call.
+  std::vector<InspectedLight> takeInspected() { return std::exchange(inspected_, {}); }
 
   std::uint32_t samples() const { return done_; }  ///< in every pixel
   /// Whether no tile is in the middle of a pass, so that the film holds only whole passes.
@@ -129,7 +129,7 @@ class PathTracer {
 
  private:
   struct Pixel {
-    glm::vec3 mean, spread;
+    glm::vec3 mean, m2;
     std::uint32_t samples;
   };
   std::vector<Pixel> readFilm() const;
@@ -150,7 +150,7 @@ class PathTracer {
   };
   Tile tile() const;  ///< the current or next one
   int tileCount() const;
-  void readAsked();
+  void readInspected();
 
   Settings settings_;
   SceneFeatures features_;
@@ -169,7 +169,7 @@ class PathTracer {
   double leakedPaths_ = 0.0, wrongCrossings_ = 0.0, iterationsTaken_ = 0.0, collisions_ = 0.0;
   gl::Buffer state_, constantsBuffer_;
   gl::Staging counters_{"path counters"};
-  gl::Texture filmMean_, filmSpread_, filmRest_;
+  gl::Texture filmMean_, filmM2_, filmRest_;
   std::array<gl::Texture, 3> kept_;  ///< copy of the current tile before the pass
   int tileSide_ = 0;
   std::uint32_t mostIterations_;  ///< per lane and submission
@@ -182,7 +182,7 @@ class PathTracer {
   bool tileBegun_ = false;
   gl::ChunkSize iterations_;  ///< per lane, in the next submission
   std::uint64_t largestBegun_ = 0, largest_ = 0;
-  std::vector<AskedLight> asked_;
+  std::vector<InspectedLight> inspected_;
 };
 
 }  // namespace lucerna

@@ -73,12 +73,12 @@ void RadiosityFrame::draw(const gl::RasterPass& pass, const SurfacePrograms& pro
   }
 }
 
-void RadiosityFrame::addShares(const AskedPixel& pixel, PixelAnswer& answer) {
+void RadiosityFrame::addShares(const InspectedPixel& pixel, PixelInspection& answer) {
   const Scene& scene = parts_.scene;
-  const AskedTerms& terms = pixel.terms;
+  const InspectedTerms& terms = pixel.terms;
   const RadiositySolution& solution = view_.solution();
   const glm::dvec3 position = answer.surface->position, reflection = answer.surface->albedo / kPi;
-  const auto patch = static_cast<std::uint32_t>(std::lround(terms.fourth(ASKED_CORNERS)));
+  const auto patch = static_cast<std::uint32_t>(std::lround(terms.fourth(INSPECTED_CORNERS)));
   answer.surface->normal = solution.mesh.patches[patch].faceNormal;
   const auto& settings = parts_.settings.of<RadiosityView::Settings>();
   const bool byPixel = view_.takesDirectRays();
@@ -89,16 +89,16 @@ void RadiosityFrame::addShares(const AskedPixel& pixel, PixelAnswer& answer) {
     if (scene.sun) names.emplace_back("sun");
     for (std::size_t i = 0; i < scene.spots.size(); ++i) names.push_back(fmt::format("spot {}", i + 1));
     for (std::size_t i = 0; i < scene.points.size(); ++i) names.push_back(fmt::format("point {}", i + 1));
-    glm::dvec3 rest =
-        glm::dvec3(terms[ASKED_RADIANCE] - terms[ASKED_EMISSION]) - reflection * glm::dvec3(terms[ASKED_INDIRECT]);
-    for (std::size_t i = 0; i < names.size() && ASKED_LIGHTS + i < AskedTerms::kCount; ++i) {
-      answer.add("direct", names[i], glm::dvec3(terms[ASKED_LIGHTS + i]));
-      rest -= glm::dvec3(terms[ASKED_LIGHTS + i]);
+    glm::dvec3 rest = glm::dvec3(terms[INSPECTED_RADIANCE] - terms[INSPECTED_EMISSION]) -
+                      reflection * glm::dvec3(terms[INSPECTED_INDIRECT]);
+    for (std::size_t i = 0; i < names.size() && INSPECTED_LIGHTS + i < InspectedTerms::kCount; ++i) {
+      answer.add("direct", names[i], glm::dvec3(terms[INSPECTED_LIGHTS + i]));
+      rest -= glm::dvec3(terms[INSPECTED_LIGHTS + i]);
     }
-    if (ASKED_LIGHTS + names.size() > AskedTerms::kCount) answer.add("direct", "more lamps", rest);
+    if (INSPECTED_LIGHTS + names.size() > InspectedTerms::kCount) answer.add("direct", "more lamps", rest);
   }
   const RadiosityOrigins origins = originsOf(parts_.context, parts_.programs, scene, solution, settings.solution, patch,
-                                             glm::dvec3(terms[ASKED_CORNERS]), settings.flat);
+                                             glm::dvec3(terms[INSPECTED_CORNERS]), settings.flat);
   const bool hasDirect = parts_.settings.component != Component::indirect,
              hasIndirect = parts_.settings.component != Component::direct;
   if (hasDirect && !byPixel)

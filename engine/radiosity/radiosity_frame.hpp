@@ -24,8 +24,8 @@ class RadiosityFrame final : public GeometryTechnique {
   /// so backs are drawn separately, with a slope-scaled depth offset.
   std::span<const Sides> sides() const override;
   const Scene& geometry() const override { return view_.scene(); }  ///< the patches
-  SurfacePrograms surfacePrograms(bool asked) const override {
-    return view_.loadPrograms(parts_.programs, parts_.drawn(), asked);
+  SurfacePrograms surfacePrograms(bool inspected) const override {
+    return view_.loadPrograms(parts_.programs, parts_.drawn(), inspected);
   }
   const gl::Program* toneMap() const override { return view_.loadMapping(parts_.programs); }
   void bindForShading() const override;
@@ -33,7 +33,7 @@ class RadiosityFrame final : public GeometryTechnique {
   /// for.
   void draw(const gl::RasterPass& pass, const SurfacePrograms& programs, const FrameView& view) override;
 
-  void addShares(const AskedPixel& pixel, PixelAnswer& answer) override;
+  void addShares(const InspectedPixel& pixel, PixelInspection& answer) override;
   void addLeftOut(std::vector<std::string>& names) const override;
   double largestIterations() const override { return chunks_ ? chunks_->largestIterations() : 0.0; }
   std::size_t gpuBytes() const override { return view_.gpuBytes() + (rays_ ? rays_->gpuBytes() : 0); }

@@ -78,7 +78,8 @@ RadiosityView::RadiosityView(const gl::Context& context, gl::ProgramLibrary& pro
   faces_ = gl::Buffer("radiosity faces", faces.size() * sizeof(float), faces.data(), gl::Usage::staticDraw);
 }
 
-SurfacePrograms RadiosityView::loadPrograms(gl::ProgramLibrary& programs, const GpuScene& gpuScene, bool asked) const {
+SurfacePrograms RadiosityView::loadPrograms(gl::ProgramLibrary& programs, const GpuScene& gpuScene,
+                                            bool inspected) const {
   const auto load = [&](const char* name, bool masked) {
     gl::ShaderFlags flags = gpuScene.materialFlags(masked);
     flags.insert(flags.end(), {{"EMISSION", gpuScene.features().emission && settings_.light != Light::indirect},
@@ -86,7 +87,7 @@ SurfacePrograms RadiosityView::loadPrograms(gl::ProgramLibrary& programs, const 
                                {"DIRECT_RAYS", takesDirectRays()},
                                {"ALPHA_MASKS", 0},
                                {"SHARED_STACK", 0},
-                               {"ASKED", asked}});
+                               {"INSPECTED", inspected}});
     return &programs.loadRaster(name, "radiosity/view.vert", "radiosity/view.frag", flags);
   };
   SurfacePrograms result;

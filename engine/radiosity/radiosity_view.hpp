@@ -47,9 +47,9 @@ class RadiosityView {
   /// The patches, for GpuScene.
   const Scene& scene() const { return lit_; }
   const RadiositySolution& solution() const { return solution_; }
-  /// Programs for GpuScene::draw with depth equal, and the display mapping (null: the engine's). asked: the variant
+  /// Programs for GpuScene::draw with depth equal, and the display mapping (null: the engine's). inspected: the variant
   /// with which one pixel records its terms.
-  SurfacePrograms loadPrograms(gl::ProgramLibrary& programs, const GpuScene& gpuScene, bool asked = false) const;
+  SurfacePrograms loadPrograms(gl::ProgramLibrary& programs, const GpuScene& gpuScene, bool inspected = false) const;
   const gl::Program* loadMapping(gl::ProgramLibrary& programs) const;
   /// Whether direct light is computed per pixel: then DirectRays must be bound too.
   bool takesDirectRays() const { return settings_.direct == Direct::pixels && settings_.light != Light::indirect; }

@@ -113,8 +113,8 @@ void Renderer::makeShadowMaps(gl::ProgramLibrary& programs) {
   if (LocalLights::isNeeded(features_)) localLights_.emplace(programs, *gpuScene_, settings_.lights, spots_, points_);
 }
 
-SurfacePrograms Renderer::surfacePrograms(gl::ProgramLibrary& programs, bool asked) const {
-  if (geometry_) return geometry_->surfacePrograms(asked);
+SurfacePrograms Renderer::surfacePrograms(gl::ProgramLibrary& programs, bool inspected) const {
+  if (geometry_) return geometry_->surfacePrograms(inspected);
   const std::string shader = technique_ ? technique_->surfaceShader() : "forward/surface.frag";
   const gl::ShaderFlags own = technique_ ? technique_->surfaceFlags() : gl::ShaderFlags{};
   const auto loadSurface = [&](const std::string& name, bool masked) {
@@ -126,7 +126,7 @@ SurfacePrograms Renderer::surfacePrograms(gl::ProgramLibrary& programs, bool ask
                                {"POINTS", localLights_ ? static_cast<int>(points_.size()) : 0},
                                {"SPECULAR", features_.specular && showsDirect()},
                                {"EMISSION", features_.emission && showsRest},
-                               {"ASKED", asked}});
+                               {"INSPECTED", inspected}});
     for (const char* flag : {"HAZE", "SHOW_REFUSED", "INDIRECT_SPECULAR"})  // 0 if the technique sets them not
       if (std::none_of(own.begin(), own.end(), [&](const auto& o) { return o.first == flag; }))
         flags.push_back({flag, 0});

@@ -46,7 +46,7 @@ class Renderer {
 
   /// What lit a pixel (counted from the top left) of the last frame, which must have been of this view. Compiles,
   /// allocates and waits.
-  PixelAnswer ask(gl::ProgramLibrary& programs, const Camera& camera, glm::ivec2 pixel);
+  PixelInspection inspect(gl::ProgramLibrary& programs, const Camera& camera, glm::ivec2 pixel);
 
   /// The picture that frames of this view converge to: everything accumulated over frames, at once.
   void renderToTheEnd(const Camera& camera);
@@ -101,10 +101,10 @@ class Renderer {
   void shade(const FrameView& view, bool depthIsDrawn);
   double iterationsOfSurface() const;  ///< of a pixel of a raster technique
   void bindForShading() const;
-  /// Shading programs; asked: the variant with which one pixel records its terms.
-  SurfacePrograms surfacePrograms(gl::ProgramLibrary& programs, bool asked) const;
-  AskedTerms drawAsked(gl::ProgramLibrary& programs, const FrameView& view, glm::ivec2 fromBelow);
-  void addDirectShares(const AskedTerms& terms, PixelAnswer& answer);
+  /// Shading programs; inspected: the variant with which one pixel records its terms.
+  SurfacePrograms surfacePrograms(gl::ProgramLibrary& programs, bool inspected) const;
+  InspectedTerms drawInspected(gl::ProgramLibrary& programs, const FrameView& view, glm::ivec2 fromBelow);
+  void addDirectShares(const InspectedTerms& terms, PixelInspection& answer);
   std::span<const GeometryTechnique::Sides> sides() const;
   bool showsDirect() const;  ///< direct light of any kind, by shadow maps
 

@@ -55,11 +55,12 @@ bool RsmFrame::record(gl::TimeQuery& timer, const FrameView& view, FrameEffort) 
 
 void RsmFrame::bindForShading() const { gather_.irradiance().bind(UNIT_GATHERED); }
 
-void RsmFrame::addShares(const AskedPixel& pixel, PixelAnswer& answer) {
+void RsmFrame::addShares(const InspectedPixel& pixel, PixelInspection& answer) {
   const glm::dvec3 reflection = answer.surface->albedo / kPi;
   // Samples of one texel, from several gather points joined by interpolation, form one share.
   std::map<std::array<int, 4>, PixelShare> texels;
-  for (const AskedPart& part : gather_.ask(parts_.programs, inputsOf(pixel.timer, pixel.view), pixel.fromBelow)) {
+  for (const InspectedPart& part :
+       gather_.inspect(parts_.programs, inputsOf(pixel.timer, pixel.view), pixel.fromBelow)) {
     PixelShare& share = texels[{part.number.x, part.number.y, part.number.z, part.number.w}];
     share.group = "rsm";
     share.name = fmt::format("texel {}, {} of map {}{}", part.number.x, part.number.y, part.number.w + 1,
@@ -69,7 +70,7 @@ void RsmFrame::addShares(const AskedPixel& pixel, PixelAnswer& answer) {
   }
   for (auto& [texel, share] : texels) answer.shares.push_back(std::move(share));
   // The picture may be painted red here.
-  if (gather_.settings().showRefused) answer.radiance = glm::dvec3(pixel.terms[ASKED_RADIANCE]);
+  if (gather_.settings().showRefused) answer.radiance = glm::dvec3(pixel.terms[INSPECTED_RADIANCE]);
 }
 
 void RsmFrame::addStagePictures(std::vector<StagePicture>& pictures) const {

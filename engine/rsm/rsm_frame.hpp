@@ -25,7 +25,7 @@ class RsmFrame final : public FrameTechnique {
   void collect(bool wait) override { gather_.collect(wait); }
   void forget() override { maps_.forget(); }
 
-  void addShares(const AskedPixel& pixel, PixelAnswer& answer) override;
+  void addShares(const InspectedPixel& pixel, PixelInspection& answer) override;
   void addStagePictures(std::vector<StagePicture>& pictures) const override;
   double largestIterations() const override { return gather_.largestIterations(); }
   std::size_t gpuBytes() const override { return maps_.gpuBytes() + visible_.gpuBytes() + gather_.gpuBytes(); }

@@ -59,7 +59,7 @@ gl::ShaderFlags RsmGather::flags(const Settings& settings, Light light) {
   return {{"NEAR", static_cast<int>(settings.nearField)},
           {"ROTATION", settings.rotation == Rotation::noise},
           {"MAP_LIGHT", static_cast<int>(light)},
-          {"ASKED", 0}};
+          {"INSPECTED", 0}};
 }
 
 RsmGather::RsmGather(gl::ProgramLibrary& programs, const SceneFeatures& features, const Settings& settings,
@@ -128,30 +128,31 @@ void RsmGather::setFit(const gl::Program& program, const Inputs& inputs) const {
   program.set("fitDistance", settings_.fitDistance);
 }
 
-std::vector<AskedPart> RsmGather::ask(gl::ProgramLibrary& programs, const Inputs& inputs, glm::ivec2 pixel) const {
+std::vector<InspectedPart> RsmGather::inspect(gl::ProgramLibrary& programs, const Inputs& inputs,
+                                              glm::ivec2 pixel) const {
   constexpr std::size_t kPlaces = 4;  // places that interpolation uses
-  std::vector<AskedPart> all;
+  std::vector<InspectedPart> all;
   for (std::size_t i = 0; i < inputs.maps.size(); ++i) {
     const Map& map = inputs.maps[i];
     gl::ShaderFlags flagsOfLight = flags(settings_, map.rsm.light);
     flagsOfLight.back().second = 1;
-    const AskedParts parts(kPlaces * static_cast<std::size_t>(settings_.samples));
+    const InspectedParts parts(kPlaces * static_cast<std::size_t>(settings_.samples));
     {
-      const gl::Program& program = programs.loadCompute(fmt::format("rsm ask {}", static_cast<int>(map.rsm.light)),
-                                                        "rsm/ask.comp", flagsOfLight);
-      const gl::ComputePass pass("rsm ask");
+      const gl::Program& program = programs.loadCompute(fmt::format("rsm inspect {}", static_cast<int>(map.rsm.light)),
+                                                        "rsm/inspect.comp", flagsOfLight);
+      const gl::ComputePass pass("rsm inspect");
       bindMap(program, settings_, map);
       visible_->bind(program, inputs.worldFromClip);
       program.set("lowStep", std::max(settings_.lowResolution, 1));
       setFit(program, inputs);
-      program.set("askedPixel", pixel);
+      program.set("inspectedPixel", pixel);
       program.set("interpolates", settings_.interpolates() ? 1 : 0);
       pattern_.bindStorage(kPatternBinding);
       irradiance_.bind(kLowUnit);
       parts.bind();
       pass.dispatch(glm::ivec3(1), glm::ivec3(1));
     }
-    for (AskedPart& part : parts.read()) {
+    for (InspectedPart& part : parts.read()) {
       part.number.w = static_cast<int>(i);
       all.push_back(part);
     }

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "base/named_values.hpp"
-#include "forward/asked_pixel.hpp"
+#include "forward/inspected_pixel.hpp"
 #include "forward/visible_surfaces.hpp"
 #include "gl/pass.hpp"
 #include "gl/picture_chunks.hpp"
@@ -78,7 +78,7 @@ class RsmGather {
 
   /// What the gather found for one pixel, counted from the lower left: one entry per sample and map, in the order of
   /// the maps; number.w is the map's index. For the last gathered frame, with the same inputs. Compiles and allocates.
-  std::vector<AskedPart> ask(gl::ProgramLibrary& programs, const Inputs& inputs, glm::ivec2 pixel) const;
+  std::vector<InspectedPart> inspect(gl::ProgramLibrary& programs, const Inputs& inputs, glm::ivec2 pixel) const;
 
   // Shared by the passes and the tests' probe.
   /// (xi1 sin 2 pi xi2, xi1 cos 2 pi xi2, xi1 or xi1^2, 0): a Hammersley set, shifted on the torus by `shift`.

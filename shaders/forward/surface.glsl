@@ -12,9 +12,9 @@
 #include "lib/frame.glsl"
 #include "lib/sh.glsl"
 #include "lib/material.glsl"
-#include "shared/asked.h"
-#if ASKED
-#include "forward/asked.glsl"
+#include "shared/inspected.h"
+#if INSPECTED
+#include "forward/inspected.glsl"
 #endif
 
 in vec3 vPosition;
@@ -51,10 +51,10 @@ vec3 reflection(vec3 albedo, vec3 normal, vec3 toCamera, vec3 toLight) {
   return reflected;
 }
 
-// Adds one term of the radiance; the queried pixel also records it.
+// Adds one term of the radiance; the inspected pixel also records it.
 void add(inout vec3 result, vec3 radiance, int term) {
   result += radiance;
-#if ASKED
+#if INSPECTED
   record(term, vec4(radiance, 0.0));
 #endif
 }
@@ -71,7 +71,7 @@ void main() {
   vec3 face = cross(normalize(dFdx(vPosition)), normalize(dFdy(vPosition)));  // the triangle's own normal
 #endif
   bool isCutOut = materialCutOut(vTexCoord);  // discarded last: lights take derivatives
-#if ASKED
+#if INSPECTED
   isVisible = !isCutOut;
 #endif
   vec3 toCamera = normalize(frame.cameraPosition - vPosition);
@@ -91,21 +91,21 @@ void main() {
 #if HAZE
     irradiance *= hazeTransmittance(vPosition, -frame.sunDirection);
 #endif
-    add(result, reflection(albedo, normal, toCamera, -frame.sunDirection) * irradiance, ASKED_SUN);
+    add(result, reflection(albedo, normal, toCamera, -frame.sunDirection) * irradiance, INSPECTED_SUN);
   }
 #endif
 #if SPOTS
   for (int i = 0; i < SPOTS; ++i) {
     Arriving light = spotLight(i, vPosition, normal, meshNormal);
     if (light.cosine > 0.0)
-      add(result, reflection(albedo, normal, toCamera, light.toLight) * light.irradiance, ASKED_SPOTS + i);
+      add(result, reflection(albedo, normal, toCamera, light.toLight) * light.irradiance, INSPECTED_SPOTS + i);
   }
 #endif
 #if POINTS
   for (int i = 0; i < POINTS; ++i) {
     Arriving light = pointLight(i, vPosition, normal, meshNormal);
     if (light.cosine > 0.0)
-      add(result, reflection(albedo, normal, toCamera, light.toLight) * light.irradiance, ASKED_POINTS + i);
+      add(result, reflection(albedo, normal, toCamera, light.toLight) * light.irradiance, INSPECTED_POINTS + i);
   }
 #endif
 #if INDIRECT
@@ -114,19 +114,19 @@ void main() {
 #endif
 #if INDIRECT_SPECULAR
   add(result, indirectSpecular(vPosition, normal, toCamera, albedo, highlight.specular, highlight.shininess),
-      ASKED_GLOSSY);
+      INSPECTED_GLOSSY);
 #endif
 #if EMISSION
-  add(result, emitted, ASKED_EMISSION);
+  add(result, emitted, INSPECTED_EMISSION);
 #endif
-#if ASKED
-  record(ASKED_POSITION, vec4(vPosition, 1.0));
-  record(ASKED_NORMAL, vec4(normal, 0.0));
-  record(ASKED_MESH_NORMAL, vec4(meshNormal, 0.0));
-  record(ASKED_ALBEDO, vec4(albedo, 0.0));
-  record(ASKED_RADIANCE, vec4(result, 0.0));
+#if INSPECTED
+  record(INSPECTED_POSITION, vec4(vPosition, 1.0));
+  record(INSPECTED_NORMAL, vec4(normal, 0.0));
+  record(INSPECTED_MESH_NORMAL, vec4(meshNormal, 0.0));
+  record(INSPECTED_ALBEDO, vec4(albedo, 0.0));
+  record(INSPECTED_RADIANCE, vec4(result, 0.0));
 #if INDIRECT
-  record(ASKED_INDIRECT, vec4(indirect, 0.0));
+  record(INSPECTED_INDIRECT, vec4(indirect, 0.0));
 #endif
 #endif
 #if SHOW_REFUSED

@@ -27,38 +27,38 @@ bool facesAgainst(uint triangle, vec3 direction) { return dot(normalOf(triangle)
 // inside `beyond`, rays in front of it inside `before`. Coinciding faces may be hit in any order, up to half a gap
 // before the surface too, so the counts decide: a boundary can be entered if the path is outside it and left if it is
 // inside. A short ray finds the faces, hit after hit.
-struct Besides {
+struct Coincident {
   uvec4 beyond, before;
   float tMin;
   uint skip;
   uint crossed;
   float gap;  // of the surface
 };
-Besides besides;
-const uint kMostBesides = 8u;
-#if PARKED
-void takeBesides() {
-  uvec4 w = state[wordAt(kBesidesWord + 2u)];
-  besides = Besides(state[wordAt(kBesidesWord)], state[wordAt(kBesidesWord + 1u)], uintBitsToFloat(w.x), w.y, w.z,
-                    uintBitsToFloat(w.w));
+Coincident coincident;
+const uint kMostCoincident = 8u;
+#if SPILLED
+void reloadCoincident() {
+  uvec4 w = state[wordAt(kCoincidentWord + 2u)];
+  coincident = Coincident(state[wordAt(kCoincidentWord)], state[wordAt(kCoincidentWord + 1u)],
+                          uintBitsToFloat(w.x), w.y, w.z, uintBitsToFloat(w.w));
 }
-void parkBesides() {
-  state[wordAt(kBesidesWord)] = besides.beyond;
-  state[wordAt(kBesidesWord + 1u)] = besides.before;
-  state[wordAt(kBesidesWord + 2u)] =
-      uvec4(floatBitsToUint(besides.tMin), besides.skip, besides.crossed, floatBitsToUint(besides.gap));
+void spillCoincident() {
+  state[wordAt(kCoincidentWord)] = coincident.beyond;
+  state[wordAt(kCoincidentWord + 1u)] = coincident.before;
+  state[wordAt(kCoincidentWord + 2u)] =
+      uvec4(floatBitsToUint(coincident.tMin), coincident.skip, coincident.crossed, floatBitsToUint(coincident.gap));
 }
 #else
-void takeBesides() {}
-void parkBesides() {}
+void reloadCoincident() {}
+void spillCoincident() {}
 #endif
 
 // ahead: one gap long, through to the far side of the surface.
-Ray besidesRay(Besides b, vec3 position, vec3 ahead) { return Ray(position - ahead, b.tMin, 2.0 * ahead, 1.0); }
+Ray coincidentRay(Coincident b, vec3 position, vec3 ahead) { return Ray(position - ahead, b.tMin, 2.0 * ahead, 1.0); }
 
 // Handles a hit of the short ray. False: the search is over, and `hit` is the first surface found that bounds nothing,
 // or kNoHit.
-bool crossBesides(inout Besides b, inout Hit hit, vec3 ahead) {
+bool crossCoincident(inout Coincident b, inout Hit hit, vec3 ahead) {
   if (hit.triangle == kNoHit) return false;
   int rank = rankOf(hit.triangle);
   bool front = facesAgainst(hit.triangle, ahead);
@@ -70,7 +70,7 @@ bool crossBesides(inout Besides b, inout Hit hit, vec3 ahead) {
   }
   b.tMin = hit.t;
   b.skip = hit.triangle;
-  if (++b.crossed < kMostBesides) return true;
+  if (++b.crossed < kMostCoincident) return true;
   hit.triangle = kNoHit;
   return false;
 }
@@ -152,7 +152,7 @@ bool crossShadow(Hit hit) {
                                        shadow.direction / unit, (far - shadow.from) * unit, words);
 #if HETEROGENEOUS
     forgetAddresses();
-    takeShadow();
+    reloadShadow();
 #endif
     shadow.words = words;
     shadow.light *= through;

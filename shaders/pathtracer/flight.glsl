@@ -71,8 +71,8 @@ int trackDensity(inout Path path, MediumRecord medium, float distance, PathNumbe
       if (counts(path.scatterings)) {
         vec3 emitted = medium.emission * (density / rate);
         addLight(path, emitted);
-#if ASKED
-        noteLight(path, numbers, lightOf(path, emitted), PATH_ASKED_MEDIUM, 0u, path.origin,
+#if INSPECTED
+        noteLight(path, numbers, lightOf(path, emitted), PATH_INSPECTED_MEDIUM, 0u, path.origin,
                   path.origin + t * path.direction, false);
 #endif
       }
@@ -141,8 +141,8 @@ void weighFlight(inout Path path, MediumRecord medium, vec3 q, float distance, b
     float x = distance * unitFloat(randomWords(numbers, path.event, kPurposeFlight).z);
     vec3 emitted = distance * medium.emission * passageWeight(medium, q, x);
     addLight(path, emitted);
-#if ASKED
-    noteLight(path, numbers, lightOf(path, emitted), PATH_ASKED_MEDIUM, 0u, path.origin,
+#if INSPECTED
+    noteLight(path, numbers, lightOf(path, emitted), PATH_INSPECTED_MEDIUM, 0u, path.origin,
               path.origin + x * path.direction, false);
 #endif
   }

@@ -23,14 +23,14 @@ layout(std140, binding = 0) uniform PathBlock { PathConstants tracer; };
 #include "rays/lights.glsl"
 
 layout(rgba32ui, binding = 0) uniform uimage2D filmMean;    // xyz and, as an integer, the number of samples
-layout(rgba32ui, binding = 1) uniform uimage2D filmSpread;  // sum of squared deviations; w unused
+layout(rgba32ui, binding = 1) uniform uimage2D filmM2;  // sum of squared deviations; w unused
 layout(rgba32ui, binding = 2) uniform uimage2D filmRest;
 #include "pathtracer/path.glsl"
 #if MEDIA
 uint collisionCount = 0u;  // of this lane, in this submission
 #endif
-#if ASKED
-#include "pathtracer/asked.glsl"
+#if INSPECTED
+#include "pathtracer/inspected.glsl"
 #endif
 #include "pathtracer/shadow_ray.glsl"
 #if INTERIORS
@@ -39,20 +39,20 @@ uint collisionCount = 0u;  // of this lane, in this submission
 #if MEDIA
 #include "pathtracer/flight.glsl"
 #endif
-#include "pathtracer/facet.glsl"
+#include "pathtracer/bsdf.glsl"
 
 #if NEXT_EVENT
 // iorBeyond, beyond: refractive index behind the surface, and the closed boundaries that contain that side.
-void addNextEvent(Path path, Surface surface, uint triangle, Facet facet, float iorBeyond, uvec4 beyond,
+void addNextEvent(Path path, Surface surface, uint triangle, Bsdf bsdf, float iorBeyond, uvec4 beyond,
                   PathNumbers numbers) {
   LightSample light;
   if (!sampleLight(surface.position, randomPair(numbers, path.event, kPurposeLight),
                    randomWords(numbers, path.event, kPurposePick), light))
     return;
   float side = dot(light.direction, surface.geometricNormal), pdf;
-  if (!(side * dot(light.direction, facet.normal) > 0.0)) return;
+  if (!(side * dot(light.direction, bsdf.normal) > 0.0)) return;
 #if ROUGH_DIELECTRICS
-  if (facet.kind != PATH_DIELECTRIC && side < 0.0) return;
+  if (bsdf.kind != PATH_DIELECTRIC && side < 0.0) return;
   if (side < 0.0) {
     path.ior = iorBeyond;
     path.inside = beyond;
@@ -60,7 +60,7 @@ void addNextEvent(Path path, Surface surface, uint triangle, Facet facet, float 
 #else
   if (side < 0.0) return;
 #endif
-  vec3 contribution = evaluate(facet, -path.direction, light.direction, pdf) * light.value;
+  vec3 contribution = evaluate(bsdf, -path.direction, light.direction, pdf) * light.value;
 #if MIS
   if (light.pdf > 0.0) contribution *= powerHeuristic(light.pdf, pdf);
 #endif
@@ -82,15 +82,15 @@ void addFromAfar(inout Path path, PathNumbers numbers) {
     if (path.pdf > 0.0) radiance *= powerHeuristic(path.pdf, tracer.environmentPick * environmentPdf(path.direction));
 #endif
     addLight(path, radiance);
-#if ASKED
+#if INSPECTED
     noteLight(path, numbers, lightOf(path, radiance), PATH_LIGHT_ENVIRONMENT, 0u, path.origin, path.direction, true);
 #endif
   }
 #elif BACKGROUND
   if (path.scatterings == 0u && counts(0u)) {
     addLight(path, tracer.background);  // visible, but lights nothing
-#if ASKED
-    noteLight(path, numbers, tracer.background, PATH_ASKED_BACKGROUND, 0u, path.origin, path.direction, true);
+#if INSPECTED
+    noteLight(path, numbers, tracer.background, PATH_INSPECTED_BACKGROUND, 0u, path.origin, path.direction, true);
 #endif
   }
 #endif
@@ -107,7 +107,7 @@ void addEmission(inout Path path, Hit hit, Surface surface, PathNumbers numbers)
   }
 #endif
   addLight(path, emission);
-#if ASKED
+#if INSPECTED
   noteLight(path, numbers, lightOf(path, emission), PATH_LIGHT_TRIANGLE, hit.triangle, path.origin, surface.position,
             false);
 #endif
@@ -115,16 +115,16 @@ void addEmission(inout Path path, Hit hit, Surface surface, PathNumbers numbers)
 #endif
 
 // iorBeyond: refractive index behind the surface.
-Facet facetOf(Path path, Surface surface, PathMaterial material, float iorBeyond) {
-  Facet facet = Facet(material.kind, material.specular, material.roughness, 1.0, surface.normal);
+Bsdf bsdfOf(Path path, Surface surface, PathMaterial material, float iorBeyond) {
+  Bsdf bsdf = Bsdf(material.kind, material.specular, material.roughness, 1.0, surface.normal);
   // For a path that sees the back of the shading normal, mirrors and glass use the geometric normal.
-  if (facet.kind != PATH_DIFFUSE && !(dot(surface.normal, path.direction) < 0.0))
-    facet.normal = surface.geometricNormal;
-  if (facet.kind == PATH_DIFFUSE) facet.albedo = albedoAt(surface);
+  if (bsdf.kind != PATH_DIFFUSE && !(dot(surface.normal, path.direction) < 0.0))
+    bsdf.normal = surface.geometricNormal;
+  if (bsdf.kind == PATH_DIFFUSE) bsdf.albedo = albedoAt(surface);
 #if DIELECTRICS
-  if (facet.kind == PATH_DIELECTRIC) facet.eta = path.ior / iorBeyond;
+  if (bsdf.kind == PATH_DIELECTRIC) bsdf.eta = path.ior / iorBeyond;
 #endif
-  return facet;
+  return bsdf;
 }
 
 // Russian roulette [Arvo1990]. While the throughput is 1 or more the survival probability stays high but below 1, so
@@ -147,7 +147,7 @@ bool survivesSurface(inout Path path, float random) {
 }
 
 // Handles the hit of the path's ray, and continues the path; false if the path has ended.
-bool meet(inout Path path, Hit hit, PathNumbers numbers) {
+bool handleHit(inout Path path, Hit hit, PathNumbers numbers) {
   // No hit: light from infinity.
   if (hit.triangle == kNoHit) {
     addFromAfar(path, numbers);
@@ -160,8 +160,8 @@ bool meet(inout Path path, Hit hit, PathNumbers numbers) {
 #endif
   uvec4 beyond = uvec4(0u);  // the closed boundaries that contain the other side
 #if TOUCHING
-  takeBesides();
-  beyond = besides.beyond;
+  reloadCoincident();
+  beyond = coincident.beyond;
 #elif INTERIORS
   beyond = path.inside;
   if (rank >= 0 && !crossBoundary(beyond, rank, surface.front)) atomicAdd(wrongCrossings, 1u);
@@ -200,17 +200,17 @@ bool meet(inout Path path, Hit hit, PathNumbers numbers) {
 #endif
   // Light from lamps at this surface.
   if (path.scatterings >= tracer.maxScatterings) return false;
-  Facet facet = facetOf(path, surface, material, iorBeyond);
+  Bsdf bsdf = bsdfOf(path, surface, material, iorBeyond);
   ++path.scatterings;
 #if NEXT_EVENT
-  park(path);
-  if (!isSmooth(facet) && counts(path.scatterings))
-    addNextEvent(path, surface, hit.triangle, facet, iorBeyond, beyond, numbers);
+  spill(path);
+  if (!isSmooth(bsdf) && counts(path.scatterings))
+    addNextEvent(path, surface, hit.triangle, bsdf, iorBeyond, beyond, numbers);
   forgetAddresses();
   take(path);
 #endif
 #if UNOCCLUDED
-  if (path.scatterings == 2u && facet.kind == PATH_DIFFUSE) {  // surfaces do not block: continue to those behind
+  if (path.scatterings == 2u && bsdf.kind == PATH_DIFFUSE) {  // surfaces do not block: continue to those behind
     path.scatterings = 1u;
     path.origin = beside(surface, -surface.geometricNormal);
     path.skip = hit.triangle;
@@ -218,7 +218,7 @@ bool meet(inout Path path, Hit hit, PathNumbers numbers) {
   }
 #endif
 #if !SCATTERED_LIGHT
-  if (path.scatterings >= tracer.maxScatterings && !isSmooth(facet)) return false;  // no further light can be found
+  if (path.scatterings >= tracer.maxScatterings && !isSmooth(bsdf)) return false;  // no further light can be found
 #endif
   // Sample the next direction, and find the side on which the path continues.
   path.travelled = 0.0;
@@ -227,12 +227,12 @@ bool meet(inout Path path, Hit hit, PathNumbers numbers) {
 #else
   uvec4 choice = randomWords(numbers, path.event, kPurposeChoice);  // for roulette only
 #endif
-  if (!scatter(path, facet, surface.geometricNormal, randomPair(numbers, path.event, kPurposeScatter),
+  if (!scatter(path, bsdf, surface.geometricNormal, randomPair(numbers, path.event, kPurposeScatter),
                unitFloat(choice.x)))
     return false;
 #if TOUCHING
-  takeBesides();
-  beyond = besides.beyond;
+  reloadCoincident();
+  beyond = coincident.beyond;
 #endif
 #if DIELECTRICS
   if (dot(path.direction, surface.geometricNormal) < 0.0) {
@@ -245,8 +245,8 @@ bool meet(inout Path path, Hit hit, PathNumbers numbers) {
   startAt(path, surface, hit.triangle);
 #if TOUCHING
   if (dot(path.direction, surface.geometricNormal) > 0.0) {
-    path.inside = besides.before;
-    path.ior = iorInside(besides.before);
+    path.inside = coincident.before;
+    path.ior = iorInside(coincident.before);
   }
 #endif
   return true;
@@ -263,17 +263,17 @@ vec3 twoSum(vec3 a, vec3 b, out vec3 rest) {
 
 // A pixel's film. A GPU reads it at the end of every sample, a software renderer once.
 struct Film {
-  vec3 mean, rest, spread;
+  vec3 mean, rest, m2;
 };
 
 Film readFilm(ivec2 pixel) {
   return Film(uintBitsToFloat(imageLoad(filmMean, pixel).xyz), uintBitsToFloat(imageLoad(filmRest, pixel).xyz),
-              uintBitsToFloat(imageLoad(filmSpread, pixel).xyz));
+              uintBitsToFloat(imageLoad(filmM2, pixel).xyz));
 }
 
 void writeFilm(ivec2 pixel, Film film, uint samples) {
   imageStore(filmMean, pixel, uvec4(floatBitsToUint(film.mean), samples));
-  imageStore(filmSpread, pixel, uvec4(floatBitsToUint(film.spread), 0u));
+  imageStore(filmM2, pixel, uvec4(floatBitsToUint(film.m2), 0u));
   imageStore(filmRest, pixel, uvec4(floatBitsToUint(film.rest), 0u));
 }
 
@@ -281,7 +281,7 @@ void writeFilm(ivec2 pixel, Film film, uint samples) {
 void addSample(inout Film film, vec3 radiance, uint samples) {
   vec3 difference = (radiance - film.mean) - film.rest;
   film.mean = twoSum(film.mean, film.rest + difference / float(samples), film.rest);
-  film.spread += difference * ((radiance - film.mean) - film.rest);
+  film.m2 += difference * ((radiance - film.mean) - film.rest);
 }
 
 ivec2 pixelAt(uint where) { return ivec2(where & 0xffffu, where >> 16u); }
@@ -293,20 +293,20 @@ uint indexOf(ivec2 pixel) { return uint(pixel.y * tracer.picture.x + pixel.x); }
 //   kTraces   begins an iteration                  traces its job's ray                        kLit, kFlies, kMeets
 //   kLit      shadow ray traced to its end         adds its light                              `after`
 //   kFlies    path's ray traced                    samples lamps along it, if in a medium      kFlown, else kArrives
-//   kFlown    lamps along it sampled               flies: may collide and scatter              kArrives, kGoesOn, kEnds
+// kFlown    lamps along it sampled               flies: may collide and scatter              kArrives, kContinue, kEnds
 //   kArrives  at a surface, or far away            looks for other boundaries beside it        kMeets
-//   kMeets    all boundaries there known           gathers light and scatters                  kGoesOn, kEnds
+//   kMeets    all boundaries there known           gathers light and scatters                  kContinue, kEnds
 //   kEnds     path ended                           completes the sample, starts the next path  kTraces
-//   kGoesOn   path has its next ray                                                            kTraces
+//   kContinue   path has its next ray                                                            kTraces
 // Queued shadow rays, and the short rays beside a boundary, come before the next stage: kTraces, with their job.
 const uint kPathRay = 0u;
 const uint kShadowRay = 1u;
-const uint kBesidesRay = 2u;  // the short ray across a boundary
+const uint kCoincidentRay = 2u;  // the short ray across a boundary
 uint job = kPathRay;
 
-const int kTraces = 0, kLit = 1, kFlies = 2, kFlown = 3, kArrives = 4, kMeets = 5, kEnds = 6, kGoesOn = 7;
+const int kTraces = 0, kLit = 1, kFlies = 2, kFlown = 3, kArrives = 4, kMeets = 5, kEnds = 6, kContinue = 7;
 int stage = kTraces;
-int after = kGoesOn;  // the stage to resume after a shadow ray has been traced to its end
+int after = kContinue;  // the stage to resume after a shadow ray has been traced to its end
 
 Hit arrival;          // the hit of the path's ray
 #if MEDIA
@@ -335,7 +335,7 @@ bool setUpRay(inout Path path, PathNumbers numbers, out Ray ray, out uint skip) 
     take(path);
     ray = Ray(path.origin, 0.0, path.direction, 3e38);
     skip = path.skip;
-#if ASKED
+#if INSPECTED
     notePlace(path);
 #endif
 #if MEDIA
@@ -345,7 +345,7 @@ bool setUpRay(inout Path path, PathNumbers numbers, out Ray ray, out uint skip) 
 #if WALKS
     if (medium >= 0) {
       if (!walk(path, mediumOf(medium), flight, numbers)) stage = kEnds;
-      park(path);
+      spill(path);
     }
     skip = path.skip;
 #endif
@@ -354,7 +354,7 @@ bool setUpRay(inout Path path, PathNumbers numbers, out Ray ray, out uint skip) 
   }
 #if !SHADOW_AT_ONCE
   if (job == kShadowRay) {
-    takeShadow();
+    reloadShadow();
 #if INTERIORS
     ray = Ray(shadow.origin, shadow.tMin, shadow.direction, shadow.infinite ? 3e38 : 1.0);
 #else
@@ -364,22 +364,22 @@ bool setUpRay(inout Path path, PathNumbers numbers, out Ray ray, out uint skip) 
   }
 #endif
 #if TOUCHING
-  if (job == kBesidesRay) {
-    takeBesides();
+  if (job == kCoincidentRay) {
+    reloadCoincident();
     Surface surface;
     if (shadow.waits) {
-      takeShadow();
-      takeHit(1u, crossed);
+      reloadShadow();
+      reloadHit(1u, crossed);
       surface = surfaceAt(crossed.triangle, crossed.barycentrics, shadow.direction);
     } else {
       take(path);
-      takeHit(0u, arrival);
+      reloadHit(0u, arrival);
       surface = surfaceAt(arrival.triangle, arrival.barycentrics, path.direction);
     }
-    besides.gap = gapAt(surface);
-    ray = besidesRay(besides, surface.position, -besides.gap * surface.geometricNormal);
-    parkBesides();
-    skip = besides.skip;
+    coincident.gap = gapAt(surface);
+    ray = coincidentRay(coincident, surface.position, -coincident.gap * surface.geometricNormal);
+    spillCoincident();
+    skip = coincident.skip;
   }
 #endif
   return true;
@@ -391,53 +391,53 @@ void useHit(inout Path path, Ray ray, Hit hit, PathNumbers numbers) {
   bool arrives = job == kPathRay && stage == kTraces;
   if (INTERIORS == 0 || arrives) arrival = hit;
   if (arrives) {
-    parkHit(0u, hit);
+    spillHit(0u, hit);
     stage = kFlies;
   }
 #if TOUCHING
   // A short ray: to the next boundary, or back to the ray that crosses them.
-  if (job == kBesidesRay) {
-    takeBesides();
+  if (job == kCoincidentRay) {
+    reloadCoincident();
     vec3 ahead = 0.5 * ray.direction;
-    bool goesOn = crossBesides(besides, hit, ahead);
+    bool goesOn = crossCoincident(coincident, hit, ahead);
     if (!goesOn && shadow.waits) {
-      takeShadow();
-      shadow.inside = besides.beyond;
+      reloadShadow();
+      shadow.inside = coincident.beyond;
       if (hit.triangle != kNoHit) shadow.light = vec3(0.0);
       shadow.tMin +=
-          dot(ahead, ahead) / max(dot(ahead, shadow.direction), 0.01 * besides.gap * length(shadow.direction));
+          dot(ahead, ahead) / max(dot(ahead, shadow.direction), 0.01 * coincident.gap * length(shadow.direction));
       job = kShadowRay;
       if (!shadowGoesOn()) stage = kLit;
-      parkShadow();
+      spillShadow();
     } else if (!goesOn) {
       job = kPathRay;
       stage = kMeets;
       if (hit.triangle != kNoHit) {  // a surface immediately behind: the path has hit it from its current position
         take(path);
-        takeHit(0u, arrival);
-        besides.beyond = besides.before = path.inside;
+        reloadHit(0u, arrival);
+        coincident.beyond = coincident.before = path.inside;
         arrival.triangle = hit.triangle;
         arrival.barycentrics = hit.barycentrics;
-        parkHit(0u, arrival);
+        spillHit(0u, arrival);
       } else if (!right) {
         atomicAdd(wrongCrossings, 1u);
       }
     }
-    parkBesides();
+    spillCoincident();
   } else
 #endif
   // A shadow ray may go on behind what it met.
   if (job == kShadowRay) {
-    takeShadow();
+    reloadShadow();
 #if INTERIORS
     bool goesOn = crossShadow(hit);
 #if TOUCHING
     if (goesOn) {
-      job = kBesidesRay;
+      job = kCoincidentRay;
       crossed = hit;
-      parkHit(1u, hit);
-      besides = Besides(shadow.inside, shadow.inside, 0.0, hit.triangle, 0u, 0.0);
-      parkBesides();
+      spillHit(1u, hit);
+      coincident = Coincident(shadow.inside, shadow.inside, 0.0, hit.triangle, 0u, 0.0);
+      spillCoincident();
     }
 #else
     goesOn = goesOn && shadowGoesOn();
@@ -447,13 +447,13 @@ void useHit(inout Path path, Ray ray, Hit hit, PathNumbers numbers) {
     if (hit.triangle != kNoHit) shadow.light = vec3(0.0);
     stage = kLit;
 #endif
-    parkShadow();
+    spillShadow();
   }
   // Add the shadow ray's light; the path resumes where it waited.
   if (stage == kLit) {
-    takeShadow();
+    reloadShadow();
     addRadiance(path, shadow.light);
-#if ASKED
+#if INSPECTED
     take(path);
     noteShadow(path, after == kFlown, numbers);
 #endif
@@ -473,7 +473,7 @@ void fly(inout Path path, PathNumbers numbers) {
     stage = medium < 0 ? kArrives : kFlown;
 #if NEXT_EVENT && (POINTS || SPOTS) && !DISTANCE_WITHOUT_PDF && !BOOSTED_INTERACTION
     if (medium >= 0 && media[medium].grid < 0 && lampsReach(path)) {
-      takeHit(0u, arrival);
+      reloadHit(0u, arrival);
       addPointLight(path, mediumOf(medium), channelProbabilities(path.throughput), flownDistance(path, arrival, flight),
                     numbers);
       traceShadowFirst();
@@ -482,10 +482,10 @@ void fly(inout Path path, PathNumbers numbers) {
   }
   if (stage == kFlown) {
     take(path);
-    takeHit(0u, arrival);
+    reloadHit(0u, arrival);
     int became = crossMedium(path, mediumInside(path.inside), flight, arrival, numbers);
-    park(path);
-    stage = became == kFlightArrives ? kArrives : became == kScattered ? kGoesOn : kEnds;
+    spill(path);
+    stage = became == kFlightArrives ? kArrives : became == kScattered ? kContinue : kEnds;
     if (stage != kArrives) traceShadowFirst();
   }
 #else
@@ -501,27 +501,27 @@ void arrive(inout Path path, PathNumbers numbers) {
     // The other boundaries crossed by the step to the far side: a face that coincides with this one belongs to the same
     // interface.
     take(path);
-    takeHit(0u, arrival);
-    besides = Besides(path.inside, path.inside, 0.0, arrival.triangle, 0u, 0.0);
+    reloadHit(0u, arrival);
+    coincident = Coincident(path.inside, path.inside, 0.0, arrival.triangle, 0u, 0.0);
     int rank = arrival.triangle != kNoHit ? rankOf(arrival.triangle) : -1;
     if (rank >= 0) {
-      right = crossBoundary(besides.beyond, rank, facesAgainst(arrival.triangle, path.direction));
-      job = kBesidesRay;
+      right = crossBoundary(coincident.beyond, rank, facesAgainst(arrival.triangle, path.direction));
+      job = kCoincidentRay;
       stage = kTraces;
     }
-    parkBesides();
+    spillCoincident();
 #endif
   }
   if (stage == kMeets) {
     take(path);
-    takeHit(0u, arrival);
-    stage = meet(path, arrival, numbers) ? kGoesOn : kEnds;
-    park(path);
+    reloadHit(0u, arrival);
+    stage = handleHit(path, arrival, numbers) ? kContinue : kEnds;
+    spill(path);
 #if SHADOW_AT_ONCE
     if (shadow.waits &&
         !anyHit(Ray(shadow.origin, 0.0, shadow.direction, shadow.infinite ? 3e38 : 1.0), shadow.skip)) {
       path.radiance += shadow.light;
-#if ASKED
+#if INSPECTED
       noteShadow(path, false, numbers);
 #endif
     }
@@ -534,7 +534,7 @@ void arrive(inout Path path, PathNumbers numbers) {
 
 void beginPath(out Path path, ivec2 pixel, PathNumbers numbers) {
   path = startPath(pixel, numbers);
-  park(path);
+  spill(path);
   startRadiance(path);
 }
 
@@ -542,11 +542,11 @@ void beginPath(out Path path, ivec2 pixel, PathNumbers numbers) {
 bool nextSample(inout Path path, inout Film film, uint where, inout PathNumbers numbers) {
   uint samples = ++numbers.sampleIndex - uint(tracer.picture.w);
   ivec2 pixel = pixelAt(where + hiddenZero());
-#if PARKED
+#if SPILLED
   film = readFilm(pixel);
 #endif
   addSample(film, radianceOf(path), samples);
-#if PARKED
+#if SPILLED
   writeFilm(pixel, film, samples);
 #endif
   if (samples >= tracer.sampleTarget) return false;
@@ -556,7 +556,7 @@ bool nextSample(inout Path path, inout Film film, uint where, inout PathNumbers 
 
 // What a GPU would otherwise keep in registers is computed again.
 void forget(inout uint where, inout PathNumbers numbers) {
-#if PARKED
+#if SPILLED
   forgetAddresses();
   where += hiddenZero();
   numbers.pixel = indexOf(pixelAt(where));
@@ -574,7 +574,7 @@ void main() {
   // picture.w: index of the film's first sample.
   PathNumbers numbers = PathNumbers(indexOf(pixel), uint(tracer.picture.w) + samples, tracer.seed);
   Film film;
-#if !PARKED
+#if !SPILLED
   film = readFilm(pixel);
 #endif
   uint where = uint(pixel.x) | uint(pixel.y) << 16u;
@@ -588,7 +588,7 @@ void main() {
   // minutes of compiling.
   bool inFlight = true;
   // ends: each ray of a path adds 4 iterations, up to tracer.iterations; between two of them lie at most 256 boundaries
-  // that a shadow ray crosses, with kMostBesides short rays each
+  // that a shadow ray crosses, with kMostCoincident short rays each
   for (;;) {
     forget(where, numbers);
     stage = kTraces;
@@ -622,12 +622,12 @@ void main() {
 #if MEDIA
   atomicAdd(collisions, collisionCount);
 #endif
-#if !PARKED
+#if !SPILLED
   writeFilm(pixel, film, numbers.sampleIndex - uint(tracer.picture.w));
 #endif
   if (inFlight) {
     atomicAdd(unfinished, 1u);
-#if !PARKED
+#if !SPILLED
     savePath(path);
 #endif
   } else {

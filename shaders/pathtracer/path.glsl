@@ -1,9 +1,9 @@
 // The path that a lane traces: its state, how it starts, and how it waits for the next submission. path.comp defines
 // its throughput.
 //
-// Flag STATE_WORDS: of a lane in the state buffer. PARKED, on GPUs: what is not needed while a ray is traced, or in
-// another stage, lies there instead of in registers. take...() and park...() do nothing otherwise.
-#define PARKED (SHARED_STACK > 0)
+// Flag STATE_WORDS: of a lane in the state buffer. SPILLED, on GPUs: what is not needed while a ray is traced, or in
+// another stage, lies there instead of in registers. reload...() and spill...() do nothing otherwise.
+#define SPILLED (SHARED_STACK > 0)
 
 layout(std430, binding = 5) restrict buffer StateBlock {
   uint unfinished;      // pixels of the tile that still lack samples
@@ -92,16 +92,16 @@ Path startPath(ivec2 pixel, PathNumbers numbers) {
 }
 
 // A lane's words in `state`. The path's are origin, skip; direction, pdf; throughput, travelled; radiance, scatterings
-// and chain; event, ior, head, face; and with INTERIORS inside. The others are for PARKED alone.
+// and chain; event, ior, head, face; and with INTERIORS inside. The others are for SPILLED alone.
 uint home = 0u;
 const uint kShadowWord = INTERIORS != 0 ? 6u : 5u;
 const uint kHitWord = 12u;      // the path's, and the boundary that a shadow ray is crossing
-const uint kBesidesWord = 14u;
+const uint kCoincidentWord = 14u;
 uint wordAt(uint word) { return home + 64u * word; }
 
 // 0, which compilers cannot know. Added to what stays the same, lest they compute all addresses and hashes before the
 // loop and keep them in some thirty registers.
-uint hiddenZero() { return PARKED ? loopIterations >> 31u : 0u; }
+uint hiddenZero() { return SPILLED ? loopIterations >> 31u : 0u; }
 void forgetAddresses() { home += hiddenZero(); }
 
 // Whether a path waits there for its next ray.
@@ -121,7 +121,7 @@ void restorePath(out Path path) {
 }
 
 // All but the radiance.
-void parkPath(Path path) {
+void spillPath(Path path) {
   state[wordAt(0u)] = uvec4(floatBitsToUint(path.origin), path.skip);
   state[wordAt(1u)] = uvec4(floatBitsToUint(path.direction), floatBitsToUint(path.pdf));
   state[wordAt(2u)] = uvec4(floatBitsToUint(path.throughput), floatBitsToUint(path.travelled));
@@ -135,39 +135,39 @@ void parkPath(Path path) {
 #endif
 }
 
-vec3 parkedRadiance() { return uintBitsToFloat(state[wordAt(3u)].xyz); }
-void parkRadiance(vec3 radiance) { state[wordAt(3u)].xyz = floatBitsToUint(radiance); }
+vec3 spilledRadiance() { return uintBitsToFloat(state[wordAt(3u)].xyz); }
+void spillRadiance(vec3 radiance) { state[wordAt(3u)].xyz = floatBitsToUint(radiance); }
 
 void savePath(Path path) {
-  parkPath(path);
-  parkRadiance(path.radiance);
+  spillPath(path);
+  spillRadiance(path.radiance);
 }
 
-#if PARKED
+#if SPILLED
 void take(out Path path) { restorePath(path); }
-void park(Path path) { parkPath(path); }
+void spill(Path path) { spillPath(path); }
 #if INTERIORS
-void takeHit(uint which, out Hit hit) {
+void reloadHit(uint which, out Hit hit) {
   uvec4 w = state[wordAt(kHitWord + which)];
   hit = Hit(uintBitsToFloat(w.x), w.y, uintBitsToFloat(w.zw));
 }
-void parkHit(uint which, Hit hit) {
+void spillHit(uint which, Hit hit) {
   state[wordAt(kHitWord + which)] = uvec4(floatBitsToUint(hit.t), hit.triangle, floatBitsToUint(hit.barycentrics));
 }
 #endif
-vec3 radianceOf(Path path) { return parkedRadiance(); }
-void startRadiance(Path path) { parkRadiance(path.radiance); }
-void addRadiance(Path path, vec3 light) { parkRadiance(parkedRadiance() + light); }
+vec3 radianceOf(Path path) { return spilledRadiance(); }
+void startRadiance(Path path) { spillRadiance(path.radiance); }
+void addRadiance(Path path, vec3 light) { spillRadiance(spilledRadiance() + light); }
 #else
 void take(Path path) {}
-void park(Path path) {}
+void spill(Path path) {}
 vec3 radianceOf(Path path) { return path.radiance; }
 void startRadiance(Path path) {}
 void addRadiance(inout Path path, vec3 light) { path.radiance += light; }
 #endif
-#if !PARKED || !INTERIORS
-void takeHit(uint which, Hit hit) {}
-void parkHit(uint which, Hit hit) {}
+#if !SPILLED || !INTERIORS
+void reloadHit(uint which, Hit hit) {}
+void spillHit(uint which, Hit hit) {}
 #endif
 
 void addLight(inout Path path, vec3 light) { addRadiance(path, lightOf(path, light)); }

@@ -31,7 +31,7 @@ void main() {
   second.y = pdf;
   second.zw = schlick(vec3(0.04, 0.9, 0.0), a.z).xy;
 #elif PROBE == 2
-  // a: o, alpha; b: two numbers. A direction reflected by a facet and its density; a direction about the normal.
+  // a: o, alpha; b: two numbers. A direction reflected by a bsdf and its density; a direction about the normal.
   vec3 h = ggxSample(a.xyz, a.w, b.xy), r = reflect(-a.xyz, h);
   ggxReflect(a.xyz, r, a.w, pdf);
   first = vec4(r, pdf);

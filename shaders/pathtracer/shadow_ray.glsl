@@ -16,7 +16,7 @@ struct Shadow {
   uvec4 inside;    // the closed boundaries that contain the current position
   uvec4 words;     // random
 #endif
-#if ASKED
+#if INSPECTED
   uint kind;       // of the lamp
   uint number;     // its triangle, or index among the lights
 #endif
@@ -28,8 +28,8 @@ Shadow shadow;
 const uint kPurposeTransmittance = kFreePurpose + 3u;
 #endif
 
-#if PARKED
-void takeShadow() {
+#if SPILLED
+void reloadShadow() {
   uvec4 w0 = state[wordAt(kShadowWord)], w1 = state[wordAt(kShadowWord + 1u)], w2 = state[wordAt(kShadowWord + 2u)];
   shadow.origin = uintBitsToFloat(w0.xyz);
   shadow.skip = w0.w;
@@ -46,7 +46,7 @@ void takeShadow() {
   shadow.words = state[wordAt(kShadowWord + 5u)];
 #endif
 }
-void parkShadow() {
+void spillShadow() {
   state[wordAt(kShadowWord)] = uvec4(floatBitsToUint(shadow.origin), shadow.skip);
   state[wordAt(kShadowWord + 1u)] = uvec4(floatBitsToUint(shadow.direction), shadow.infinite ? 1u : 0u);
 #if INTERIORS
@@ -60,8 +60,8 @@ void parkShadow() {
 #endif
 }
 #else
-void takeShadow() {}
-void parkShadow() {}
+void reloadShadow() {}
+void spillShadow() {}
 #endif
 
 // start: origin of the ray, on the triangle `skip`.
@@ -70,7 +70,7 @@ void queueShadowRay(Path path, vec3 contribution, vec3 start, LightSample light,
   shadow.infinite = light.infinite;
   shadow.skip = skip;
   shadow.light = lightOf(path, contribution);
-#if ASKED
+#if INSPECTED
   shadow.kind = lights[pickedLight].kind;
   shadow.number = shadow.kind == PATH_LIGHT_TRIANGLE ? lights[pickedLight].p : pickedLight;
 #endif
@@ -83,10 +83,10 @@ void queueShadowRay(Path path, vec3 contribution, vec3 start, LightSample light,
   shadow.inside = path.inside;
   shadow.words = randomWords(numbers, path.event, kPurposeTransmittance);
 #endif
-  parkShadow();
+  spillShadow();
 }
 
-#if ASKED
+#if INSPECTED
 // Records the shadow ray's contribution. The path has not moved since, though it may have a new direction.
 // inFlight: the ray started at a point of a flight through a medium, which scatters there.
 void noteShadow(Path path, bool inFlight, PathNumbers numbers) {

@@ -29,7 +29,7 @@ vec2 directShift(uvec2 v) {
 
 // position: of the pixel; normal: for shading; face: of the geometry; both unit, on the front side. plane: distance of
 // the face's plane from the origin along `face`; magnitude: the largest coordinate of the triangle in the ray caster.
-// reflection: radiance per irradiance, for the queried pixel.
+// reflection: radiance per irradiance, for the inspected pixel.
 // A position interpolated over a large face is off by more than its own rounding, so it is projected back onto the
 // plane. Rays then start beyond the rounding error of that triangle, as a path's do.
 vec3 directIrradiance(vec3 position, vec3 normal, vec3 face, float plane, float magnitude, vec3 reflection) {
@@ -84,8 +84,8 @@ vec3 directIrradiance(vec3 position, vec3 normal, vec3 face, float plane, float 
     }
     vec3 arriving = all > 0.0 ? unblocked * (open / all) : vec3(0.0);
     sum += arriving;
-#if ASKED
-    record(ASKED_LIGHTS + i, vec4(reflection * arriving, 0.0));
+#if INSPECTED
+    record(INSPECTED_LIGHTS + i, vec4(reflection * arriving, 0.0));
 #endif
   }
   return sum;

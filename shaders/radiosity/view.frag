@@ -7,9 +7,9 @@ in vec3 vPosition;
 in vec3 vIrradiance;
 in vec2 vTexCoord;
 in vec3 vCorner;
-#if ASKED
+#if INSPECTED
 flat in int vPatch;
-#include "forward/asked.glsl"
+#include "forward/inspected.glsl"
 #endif
 #if DIRECT_RAYS
 #include "radiosity/direct_rays.glsl"
@@ -45,14 +45,14 @@ void main() {
 #if EMISSION
     result += emitted;
 #endif
-#if ASKED
-    record(ASKED_POSITION, vec4(vPosition, 1.0));
-    record(ASKED_ALBEDO, vec4(albedo, 0.0));
-    record(ASKED_RADIANCE, vec4(result, 0.0));
-    record(ASKED_INDIRECT, vec4(vIrradiance, 0.0));
-    record(ASKED_CORNERS, vec4(vCorner, float(vPatch)));
+#if INSPECTED
+    record(INSPECTED_POSITION, vec4(vPosition, 1.0));
+    record(INSPECTED_ALBEDO, vec4(albedo, 0.0));
+    record(INSPECTED_RADIANCE, vec4(result, 0.0));
+    record(INSPECTED_INDIRECT, vec4(vIrradiance, 0.0));
+    record(INSPECTED_CORNERS, vec4(vCorner, float(vPatch)));
 #if EMISSION
-    record(ASKED_EMISSION, vec4(emitted, 0.0));
+    record(INSPECTED_EMISSION, vec4(emitted, 0.0));
 #endif
 #endif
   }

@@ -17,7 +17,7 @@ out vec3 vPosition;
 out vec3 vIrradiance;
 out vec2 vTexCoord;
 out vec3 vCorner;  // barycentric
-#if ASKED
+#if INSPECTED
 flat out int vPatch;
 #endif
 
@@ -27,7 +27,7 @@ void main() {
   vIrradiance = vec3(irradiances[at], irradiances[at + 1], irradiances[at + 2]);
   vTexCoord = texCoord;
   vCorner = vec3(gl_VertexID % 3 == 0, gl_VertexID % 3 == 1, gl_VertexID % 3 == 2);
-#if ASKED
+#if INSPECTED
   vPatch = gl_VertexID / 3;
 #endif
 #if DIRECT_RAYS

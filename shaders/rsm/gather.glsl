@@ -7,8 +7,8 @@
 layout(std430, binding = 0) readonly buffer Pattern { vec4 pattern[]; };  // xi1 sin, xi1 cos, weight, unused
 uniform int adds;
 uniform float gatherRadius;  // r, as a fraction of the map's width
-#if ASKED
-// For the queried pixel (rsm/ask.comp): receives sample i's contribution to the irradiance, and its surfel.
+#if INSPECTED
+// For the inspected pixel (rsm/inspect.comp): receives sample i's contribution to the irradiance, and its surfel.
 void tell(int i, RsmSurfel surfel, ivec3 texel, vec3 irradiance);
 #endif
 
@@ -34,7 +34,7 @@ vec3 gatherIrradiance(vec3 position, vec3 normal, float rotation) {
     if (!surfel.lit) continue;
     vec3 part = p.z * (sine / (xi1 * solidAngle)) * surfelIrradiance(surfel, position, normal);
     sum += part;
-#if ASKED
+#if INSPECTED
     tell(i, surfel, texel, part * (2.0 * kPi * most / float(pattern.length())));
 #endif
   }
@@ -56,7 +56,7 @@ vec3 gatherIrradiance(vec3 position, vec3 normal, float rotation) {
     if (!surfel.lit) continue;
     vec3 part = p.z * surfelIrradiance(surfel, position, normal);
     sum += part;
-#if ASKED
+#if INSPECTED
     tell(i, surfel, ivec3(at, 0), part * (2.0 * kPi * radius.x * radius.y / float(pattern.length())));
 #endif
   }

@@ -22,13 +22,13 @@ SHARED_BEGIN
 
 #define PATH_NO_TEXTURE (-1)
 
-// Data of the queried pixel, stored after the lanes' state, in uvec4: number of records; vertices of the current path;
-// records. A record: radiance and sample; scatterings, kind of light, its number, number of vertices; the vertices, and
-// the light's position (w: 1 at infinity, then the direction to it).
-#define PATH_ASKED_PLACES 8
-#define PATH_ASKED_RECORD 11
-#define PATH_ASKED_MEDIUM 5u      // in addition to the kinds of lights: an emissive medium
-#define PATH_ASKED_BACKGROUND 6u
+// Data of the inspected pixel, stored after the lanes' state, in uvec4: number of records; vertices of the current
+// path; records. A record: radiance and sample; scatterings, kind of light, its number, number of vertices; the
+// vertices, and the light's position (w: 1 at infinity, then the direction to it).
+#define PATH_INSPECTED_PLACES 8
+#define PATH_INSPECTED_RECORD 11
+#define PATH_INSPECTED_MEDIUM 5u      // in addition to the kinds of lights: an emissive medium
+#define PATH_INSPECTED_BACKGROUND 6u
 
 struct PathConstants {
   vec3 cameraPosition;

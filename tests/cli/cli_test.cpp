@@ -76,8 +76,8 @@ TEST_F(CommandLine, InfoReportsHostAndScene) {
   EXPECT_EQ(info.at("triangles"), 4);
   EXPECT_GE(info.at("vertices"), 6);
   EXPECT_EQ(info.at("materials"), 2);
-  EXPECT_EQ(info.at("needs").at("alphaMasks"), false);
-  EXPECT_EQ(info.at("needs").at("indirect"), true);
+  EXPECT_EQ(info.at("features").at("alphaMasks"), false);
+  EXPECT_EQ(info.at("features").at("indirect"), true);
   EXPECT_NE(info.at("renderer").get<std::string>(), "");
 }
 

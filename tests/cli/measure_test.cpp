@@ -495,8 +495,8 @@ TEST_F(Measure, AFullDiskIsOneLine) {
   expectOneLine(all, 2, {"No space left on device", small});
 }
 
-TEST_F(Measure, NeedsSayWhatLeavingOutSaves) {
-  const RunResult result = RUN_LUCERNA("bench needs '" + path("scene.obj") +
+TEST_F(Measure, FeaturesSayWhatLeavingOutSaves) {
+  const RunResult result = RUN_LUCERNA("bench features '" + path("scene.obj") +
                                        "' --size 32x16 --frames 1 --technique direct --json '" + path("n.json") + "'");
   ASSERT_EQ(result.exitCode, 0) << result.err;
   const auto n = json("n.json");

@@ -91,7 +91,7 @@ TEST_F(ReportPage, OfTheWholeReport) {
   const auto all =
       test::run("LUCERNA_REFERENCES='" + path("references") +
                 "' '" LUCERNA_BINARY "' bench all '" LUCERNA_SOURCE_DIR "/assets/cornell/cornell.json' --out '" +
-                path("out") + "' --scale 0.02 --parts error,needs --json '" + path("all.json") + "' --quiet");
+                path("out") + "' --scale 0.02 --parts error,features --json '" + path("all.json") + "' --quiet");
   ASSERT_EQ(all.exitCode, 0) << all.err;
   expectNoFault("out/index.html", "all.json", 300);
 }

@@ -31,7 +31,7 @@ Words linesOf(const std::string& text) {
 std::string inQuotes(const std::string& word) { return fmt::format("'{}'", word); }
 
 /// What bash offers for the last of the words, into which it has divided the line ('=' is a word of its own).
-Words bashOffers(const Words& words, const std::string& folder = ".") {
+Words bashCompletions(const Words& words, const std::string& folder = ".") {
   const TempFolder script;
   script.write("lucerna.bash", RUN_LUCERNA("completion bash").out);
   std::string line;
@@ -46,39 +46,39 @@ Words bashOffers(const Words& words, const std::string& folder = ".") {
   return linesOf(result.out);
 }
 
-TEST(Completions, BashOffersCommandsAndTheirOptions) {
-  EXPECT_EQ(bashOffers({"ben"}), Words{"bench"});
-  EXPECT_EQ(bashOffers({"bench", "s"}), Words{"stability"});
-  EXPECT_EQ(bashOffers({"bench", "error", "--refer"}), (Words{"--references", "--reference-spp"}));
-  EXPECT_EQ(bashOffers({"radiosity", "solve", "--vis"}), Words{"--visibility"});
-  EXPECT_EQ(bashOffers({"render", "--vis"}), Words{}) << "an option of another command";
+TEST(Completions, BashCompletesCommandsAndTheirOptions) {
+  EXPECT_EQ(bashCompletions({"ben"}), Words{"bench"});
+  EXPECT_EQ(bashCompletions({"bench", "s"}), Words{"stability"});
+  EXPECT_EQ(bashCompletions({"bench", "error", "--refer"}), (Words{"--references", "--reference-spp"}));
+  EXPECT_EQ(bashCompletions({"radiosity", "solve", "--vis"}), Words{"--visibility"});
+  EXPECT_EQ(bashCompletions({"render", "--vis"}), Words{}) << "an option of another command";
 }
 
-TEST(Completions, BashOffersValues) {
-  EXPECT_EQ(bashOffers({"render", "--technique", "r"}), (Words{"rsm", "radiosity"}));
-  EXPECT_EQ(bashOffers({"render", "a.obj", "--technique", "p"}), Words{"path"});
-  EXPECT_EQ(bashOffers({"walk", "--technique", "p"}), Words{"path"});
-  EXPECT_EQ(bashOffers({"render", "--set", "lpv.lookup", "=", "f"}), Words{"flux"});
-  EXPECT_EQ(bashOffers({"render", "--set", "rsm.interpolate", "="}), (Words{"on", "off"}));
-  EXPECT_EQ(bashOffers({"render", "--technique", "=", "lp"}), Words{"lpv"});
-  EXPECT_EQ(bashOffers({"render", "--set", "lpv.casc"}), Words{"lpv.cascades="});
-  EXPECT_EQ(bashOffers({"render", "--set", "=", "lpv.casc"}), Words{"lpv.cascades="});
-  EXPECT_EQ(bashOffers({"radiosity", "solve", "--set", "radiosity.m"}), Words{"radiosity.memory="})
+TEST(Completions, BashCompletesValues) {
+  EXPECT_EQ(bashCompletions({"render", "--technique", "r"}), (Words{"rsm", "radiosity"}));
+  EXPECT_EQ(bashCompletions({"render", "a.obj", "--technique", "p"}), Words{"path"});
+  EXPECT_EQ(bashCompletions({"walk", "--technique", "p"}), Words{"path"});
+  EXPECT_EQ(bashCompletions({"render", "--set", "lpv.lookup", "=", "f"}), Words{"flux"});
+  EXPECT_EQ(bashCompletions({"render", "--set", "rsm.interpolate", "="}), (Words{"on", "off"}));
+  EXPECT_EQ(bashCompletions({"render", "--technique", "=", "lp"}), Words{"lpv"});
+  EXPECT_EQ(bashCompletions({"render", "--set", "lpv.casc"}), Words{"lpv.cascades="});
+  EXPECT_EQ(bashCompletions({"render", "--set", "=", "lpv.casc"}), Words{"lpv.cascades="});
+  EXPECT_EQ(bashCompletions({"radiosity", "solve", "--set", "radiosity.m"}), Words{"radiosity.memory="})
       << "radiosity.mesh and radiosity.mapping belong to the view";
-  EXPECT_EQ(bashOffers({"radiosity", "generate", "out.bin", ""}), (Words{"1", "2", "3"}));
-  EXPECT_EQ(bashOffers({"render", "--repeat", ""}), Words{}) << "a number";
+  EXPECT_EQ(bashCompletions({"radiosity", "generate", "out.bin", ""}), (Words{"1", "2", "3"}));
+  EXPECT_EQ(bashCompletions({"render", "--repeat", ""}), Words{}) << "a number";
   // Bash puts the answer in the place of what follows '='.
-  EXPECT_EQ(bashOffers({"render", "--deviation", "lpv.flux-units", "="}), (Words{"on", "off"}));
-  EXPECT_EQ(bashOffers({"render", "--deviation", "lpv.flux-units", "=", "of"}), Words{"off"});
+  EXPECT_EQ(bashCompletions({"render", "--deviation", "lpv.flux-units", "="}), (Words{"on", "off"}));
+  EXPECT_EQ(bashCompletions({"render", "--deviation", "lpv.flux-units", "=", "of"}), Words{"off"});
 }
 
-TEST(Completions, BashOffersFilesWithSpacesToo) {
+TEST(Completions, BashCompletesFilesWithSpacesToo) {
   const TempFolder folder;
   folder.write("my scene.obj", "");
   folder.write("other.obj", "");
-  EXPECT_EQ(bashOffers({"render", "my"}, folder.path().string()), Words{"my scene.obj"});
-  EXPECT_EQ(bashOffers({"render", "my scene.obj", "-o", "oth"}, folder.path().string()), Words{"other.obj"});
-  EXPECT_EQ(bashOffers({"render", "x", "y"}, folder.path().string()), Words{}) << "render takes one scene";
+  EXPECT_EQ(bashCompletions({"render", "my"}, folder.path().string()), Words{"my scene.obj"});
+  EXPECT_EQ(bashCompletions({"render", "my scene.obj", "-o", "oth"}, folder.path().string()), Words{"other.obj"});
+  EXPECT_EQ(bashCompletions({"render", "x", "y"}, folder.path().string()), Words{}) << "render takes one scene";
 }
 
 // What is offered is what the program takes: its message for a wrong value lists the right ones.
@@ -110,7 +110,7 @@ TEST(Completions, OfferWhatTheProgramTakes) {
     std::istringstream before(c.before);
     for (std::string word; before >> word;) words.push_back(word);
     words.insert(words.end(), {c.option, ""});
-    Words offered = bashOffers(words);
+    Words offered = bashCompletions(words);
     std::sort(taken.begin(), taken.end());
     std::sort(offered.begin(), offered.end());
     EXPECT_EQ(offered, taken) << c.before << " " << c.option;
@@ -118,7 +118,7 @@ TEST(Completions, OfferWhatTheProgramTakes) {
 }
 
 TEST(Completions, EveryDeviationThatIsOfferedIsTaken) {
-  const Words deviations = bashOffers({"render", "--deviation", ""});
+  const Words deviations = bashCompletions({"render", "--deviation", ""});
   EXPECT_GT(deviations.size(), 20u);
   std::string all = "render nowhere.obj -o x.png";
   for (const std::string& deviation : deviations) all.append(" --deviation ").append(deviation);
@@ -128,7 +128,7 @@ TEST(Completions, EveryDeviationThatIsOfferedIsTaken) {
       << "options are read before the scene; " << result.err;
 }
 
-TEST(Completions, FishOffersCommandsOptionsAndValues) {
+TEST(Completions, FishCompletesCommandsOptionsAndValues) {
   if (!installed("fish")) GTEST_SKIP() << "fish is not installed";
   const TempFolder folder;
   folder.write("lucerna.fish", RUN_LUCERNA("completion fish").out);
@@ -151,7 +151,7 @@ TEST(Completions, FishOffersCommandsOptionsAndValues) {
 }
 
 // In a terminal of its own, with the keys that a user would press.
-TEST(Completions, ZshOffersCommandsOptionsAndValues) {
+TEST(Completions, ZshCompletesCommandsOptionsAndValues) {
   if (!installed("zsh")) GTEST_SKIP() << "zsh is not installed";
   const TempFolder folder;
   folder.write("_lucerna", RUN_LUCERNA("completion zsh").out);

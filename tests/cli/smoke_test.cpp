@@ -77,7 +77,7 @@ TEST_F(Smoke, BenchErrorTakesTheReferencesOfBenchReferences) {
 }
 
 TEST_F(Smoke, BenchAllMakesOnePageOfTheChosenParts) {
-  ASSERT_NO_FATAL_FAILURE(expectRuns("bench all " + scene() + "--parts needs --scale 0.01 --quiet --out '" +
+  ASSERT_NO_FATAL_FAILURE(expectRuns("bench all " + scene() + "--parts features --scale 0.01 --quiet --out '" +
                                      path("out") + "' --json '" + path("all.json") + "'"));
   const std::string page = readFileText(path("out/index.html"));
   EXPECT_NE(page.find("left out"), std::string::npos);

@@ -139,7 +139,7 @@ TEST_F(Window, APixelIsAskedWhatLitIt) {
   write("input.txt",
         "1 key R\n4 save before.png\n5 cursor 200.5 250.5\n6 key I\n10 touch Pixel/export as JSON\n12 save lines.png\n"
         "13 touch Pixel/draw its light\n15 save hidden.png\n16 touch Pixel/forget\n"
-        "17 touch Pixel/ask by clicking\n18 click 100 300\n40 touch Pixel/export as JSON\n");
+        "17 touch Pixel/inspect by clicking\n18 click 100 300\n40 touch Pixel/export as JSON\n");
   const RunResult result =
       play(path("input.txt"), "--technique rsm --set rsm.samples=4 --set rsm.interpolate=off --shots .", "", "700x400");
   ASSERT_EQ(result.exitCode, 0) << result.err;

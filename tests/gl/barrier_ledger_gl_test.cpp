@@ -151,7 +151,7 @@ TEST_F(BarrierLedgerOnGl, EachBarrierOfTheEngineIsMissed) {
     renderer.render(test::openBoxCamera());
     renderer.render(test::lookingAt({3.0, 4.0, 4.0}, {-2.0, -2.0, -1.0}));
     renderer.render(test::openBoxCamera());
-    if (c.technique == "radiosity") renderer.ask(library(), test::openBoxCamera(), settings.size / 2);
+    if (c.technique == "radiosity") renderer.inspect(library(), test::openBoxCamera(), settings.size / 2);
     renderer.drain();
     renderer.readRadiance();
   };

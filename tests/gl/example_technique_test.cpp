@@ -52,7 +52,7 @@ TEST_F(ExampleTechnique, IsAddedAndAddsItsLightToEverySurface) {
   without.render(openBoxCamera());
   const Image all = renderer.readRadiance(), direct = without.readRadiance();
   for (const glm::ivec2& pixel : {glm::ivec2(4, 4), glm::ivec2(16, 12), glm::ivec2(28, 20)}) {
-    const PixelAnswer answer = renderer.ask(programs, openBoxCamera(), pixel);
+    const PixelInspection answer = renderer.inspect(programs, openBoxCamera(), pixel);
     ASSERT_TRUE(answer.surface);
     const glm::dvec3 expected = answer.surface->albedo / kPi * 2.5;
     for (int c = 0; c < 3; ++c)

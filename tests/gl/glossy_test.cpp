@@ -1,5 +1,5 @@
 // Glossy reflection of the light propagation volume on GL: its lobes against another quadrature, the shader against a
-// double-precision twin and closed forms, and pictures against the path tracer.
+// double-precision reference implementation and closed forms, and pictures against the path tracer.
 #include "cascades/cascades.hpp"
 #include "lpv/glossy_lobes.hpp"
 #include "lpv/light_propagation_volume.hpp"
@@ -9,7 +9,7 @@
 #include "render/renderer.hpp"
 #include "shared/bindings.h"
 #include "support/gl_fixture.hpp"
-#include "support/lpv_twin.hpp"
+#include "support/lpv_reference.hpp"
 #include "support/small_scenes.hpp"
 
 #include "gl/pass.hpp"
@@ -26,9 +26,9 @@ namespace {
 constexpr double kTau = 2.0 * std::numbers::pi;
 const double kBasis0 = 0.5 / std::sqrt(std::numbers::pi), kBasis1 = std::sqrt(0.75 / std::numbers::pi);
 
-/// The twin of the lobe: midpoint rule over the facets visible from o, by the spherical caps of [DupuyBenyoub2023],
-/// each weighted by G2 / G1, where the engine has all facets. GGX with height-correlated shadowing [Heitz2014, eq 99].
-/// To 4e-4. x: towards the mirror direction's side.
+/// The reference implementation of the lobe: midpoint rule over the facets visible from o, by the spherical caps of
+/// [DupuyBenyoub2023], each weighted by G2 / G1, where the engine has all facets. GGX with height-correlated shadowing
+/// [Heitz2014, eq 99]. To 4e-4. x: towards the mirror direction's side.
 GlossyLobe lobeOverVisibleFacets(double cosine, double alpha) {
   constexpr int kPoints = 400;
   const glm::dvec3 o(-std::sqrt(1.0 - cosine * cosine), 0.0, cosine);
@@ -62,7 +62,7 @@ struct SmallVolume {
   double cellSize = 0.5, irradiance = 3.0;
   int steps = 1;
   std::vector<glm::vec4> texels[3];
-  std::optional<twin::Volume> geometry;  ///< its samples lie on the cells' corners; none: empty
+  std::optional<reference::Volume> geometry;  ///< its samples lie on the cells' corners; none: empty
   glm::dvec4 at(int channel, const glm::ivec3& cell) const {
     if (glm::any(glm::lessThan(cell, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(cell, glm::ivec3(cells))))
       return glm::dvec4(0.0);
@@ -80,21 +80,22 @@ struct SmallVolume {
   }
 };
 
-/// Light along a direction by the twin: the march to surfels of the geometry.
+/// Light along a direction by the reference implementation: the march to surfels of the geometry.
 glm::dvec4 lightAlong(const SmallVolume& volume, int channel, const glm::dvec3& position, const glm::dvec3& towards) {
   double left = 1.0;
   int k = 1;
   for (; k < volume.steps; ++k) {
     if (!volume.geometry) continue;
-    const twin::Sh potential = twin::sampleTrilinear(*volume.geometry, position + (k + 1) * volume.cellSize * towards);
-    left -= std::clamp(-2.0 * twin::kY1 * glm::dot(potential.c1, towards), 0.0, 1.0);
+    const reference::Sh potential =
+        reference::sampleTrilinear(*volume.geometry, position + (k + 1) * volume.cellSize * towards);
+    left -= std::clamp(-2.0 * reference::kY1 * glm::dot(potential.c1, towards), 0.0, 1.0);
     if (left < 0.5) break;
   }
   return volume.trilinear(channel, position + k * volume.cellSize * towards);
 }
 
-/// The twin of shaders/lpv/glossy.glsl: the reflected radiance, from the lobe's own integrals.
-glm::dvec3 reflectedByTwin(const SmallVolume& volume, const GlossyProbe& probe) {
+/// The reference implementation of shaders/lpv/glossy.glsl: the reflected radiance, from the lobe's own integrals.
+glm::dvec3 reflectedByReference(const SmallVolume& volume, const GlossyProbe& probe) {
   const glm::dvec3 n(probe.normal), o(probe.toCamera), position(probe.position);
   const double cosine = glm::dot(n, o), alpha = std::sqrt(2.0 / (static_cast<double>(probe.specular.w) + 2.0));
   const glm::dvec3 across = glm::normalize(cosine * n - o);
@@ -111,7 +112,7 @@ glm::dvec3 reflectedByTwin(const SmallVolume& volume, const GlossyProbe& probe) 
   }
   std::erase_if(cone, [&](const glm::dvec3& one) { return glm::dot(one, n) <= 0.0; });
   // Radiance l0 = 2/3 c0, l1 = 3 / (2 pi) (front + 8 side / sqrt 5) c1: the solid angles of a cell's faces.
-  const double band1 = 3.0 / kTau * (twin::frontSolidAngle() + 8.0 * twin::sideSolidAngle() / std::sqrt(5.0));
+  const double band1 = 3.0 / kTau * (reference::frontSolidAngle() + 8.0 * reference::sideSolidAngle() / std::sqrt(5.0));
   glm::dvec3 result;
   for (int c = 0; c < 3; ++c) {
     glm::dvec4 light(0.0);
@@ -146,7 +147,7 @@ class GlossyTest : public test::SharedProgramsTest {
     gl::Texture geometry("geometry", gl::Format::rgba32f, glm::ivec3(volume.cells + 1), sampling);
     std::vector<glm::vec4> corners;
     if (volume.geometry)
-      for (const twin::Sh& sh : volume.geometry->cells) corners.emplace_back(glm::dvec4(sh.c0, sh.c1));
+      for (const reference::Sh& sh : volume.geometry->cells) corners.emplace_back(glm::dvec4(sh.c0, sh.c1));
     else corners.assign(static_cast<std::size_t>(std::pow(volume.cells + 1, 3)), glm::vec4(0.0f));
     geometry.upload(gl::Texels::rgbaFloat, corners.data());
     const gl::Program& program = library().loadCompute("glossy probe", "lpv/glossy_probe.comp", flags);
@@ -227,7 +228,7 @@ TEST_F(GlossyTest, AConstantRadianceIsReflectedByTheReflectance) {
 }
 
 // Any light: coefficients drawn at random, in cells and places between them; with surfels in half of the corners too.
-TEST_F(GlossyTest, TheShaderAgreesWithItsTwin) {
+TEST_F(GlossyTest, TheShaderAgreesWithItsReference) {
   std::mt19937 random(7);
   std::uniform_real_distribution<float> unit(0.0f, 1.0f), sign(-0.5f, 0.5f);
   for (const bool hasSurfels : {false, true}) {
@@ -239,23 +240,23 @@ TEST_F(GlossyTest, TheShaderAgreesWithItsTwin) {
         channel.push_back({1.0f + unit(random), sign(random), sign(random), sign(random)});
     if (hasSurfels) {
       volume.geometry.emplace(
-          twin::geometryGrid(twin::GridSpec{glm::ivec3(volume.cells), glm::dvec3(0.0), volume.cellSize}));
-      for (twin::Sh& sh : volume.geometry->cells)
+          reference::geometryGrid(reference::GridSpec{glm::ivec3(volume.cells), glm::dvec3(0.0), volume.cellSize}));
+      for (reference::Sh& sh : volume.geometry->cells)
         if (unit(random) < 0.5f)
-          sh = 0.4 * twin::lobe(glm::normalize(glm::dvec3(sign(random), sign(random), sign(random))));
+          sh = 0.4 * reference::lobe(glm::normalize(glm::dvec3(sign(random), sign(random), sign(random))));
     }
     const std::vector<GlossyProbe> places = probes(volume, {0.2f, 0.7f, 0.97f}, {0.9f, 0.3f, 0.04f});
     const std::vector<glm::dvec3> found = reflected(volume, places);
     double largest = 0.0, brightest = 0.0;
     for (std::size_t i = 0; i < places.size(); ++i) {
-      const glm::dvec3 expected = reflectedByTwin(volume, places[i]);
+      const glm::dvec3 expected = reflectedByReference(volume, places[i]);
       for (int c = 0; c < 3; ++c) {
         largest = std::max(largest, std::abs(found[i][c] - expected[c]));
         brightest = std::max(brightest, expected[c]);
       }
     }
-    std::cout << "[ measured ] " << (hasSurfels ? "surfels" : "no surfels") << ": largest difference to the twin "
-              << largest / brightest << "\n";
+    std::cout << "[ measured ] " << (hasSurfels ? "surfels" : "no surfels")
+              << ": largest difference to the reference implementation " << largest / brightest << "\n";
     EXPECT_LT(largest, 8e-3 * brightest) << hasSurfels;  // of the lobes' own quadrature and of their table
   }
 }
@@ -274,9 +275,9 @@ TEST_F(GlossyTest, AMarchEndsAtTheFirstWall) {
   const GlossyProbe up{
       {8.0f, 4.2f, 8.0f, 1}, {0, 1, 0, 0}, {0.1f, 0.995f, 0.0f, 0}, glm::vec4(0.0f), {1.0f, 1.0f, 1.0f, 1e5f}};
   const auto seen = [&](bool wall) {
-    volume.geometry.emplace(twin::geometryGrid(twin::GridSpec{glm::ivec3(16), glm::dvec3(0.0), 1.0}));
+    volume.geometry.emplace(reference::geometryGrid(reference::GridSpec{glm::ivec3(16), glm::dvec3(0.0), 1.0}));
     for (int z = 0; z <= 16 && wall; ++z)
-      for (int x = 0; x <= 16; ++x) volume.geometry->at({x, 10, z}) = twin::lobe({0, -1, 0});
+      for (int x = 0; x <= 16; ++x) volume.geometry->at({x, 10, z}) = reference::lobe({0, -1, 0});
     return reflected(volume, {up})[0].x;
   };
   EXPECT_NEAR(seen(true), 1.0, 0.02) << "radiance 1 before the wall";
@@ -457,7 +458,7 @@ TEST_F(GlossyTest, AnAskedPixelListsIt) {
   renderer.renderToTheEnd(test::openBoxCamera());
   const Image image = renderer.readRadiance();
   const glm::ivec2 pixel(kGlossySize.x * 9 / 20, kGlossySize.y / 2);
-  const PixelAnswer answer = renderer.ask(library(), test::openBoxCamera(), pixel);
+  const PixelInspection answer = renderer.inspect(library(), test::openBoxCamera(), pixel);
   ASSERT_TRUE(std::ranges::any_of(answer.shares, [](const PixelShare& s) { return s.name == "glossy reflection"; }));
   for (int c = 0; c < 3; ++c)
     EXPECT_NEAR(answer.sum()[c], static_cast<double>(image.at(pixel.x, pixel.y)[c]), 1e-5) << c;

@@ -19,7 +19,7 @@
 #include "render/renderer.hpp"
 #include "rsm/reflective_shadow_map.hpp"
 #include "support/faulty_shaders.hpp"
-#include "support/form_factor_twin.hpp"
+#include "support/form_factor_reference.hpp"
 #include "support/largest_difference.hpp"
 #include "support/long_tests.hpp"
 #include "support/path_scenes.hpp"
@@ -313,7 +313,7 @@ TEST_F(IrradianceCacheGl, AWallBesideASunlitFloor) {
   room.expect(
       seen.image,
       [&](const glm::dvec3& p) {
-        return 0.8 * kPi * twin::pointToPolygon(p, {1, 0, 0}, plate);
+        return 0.8 * kPi * reference::pointToPolygon(p, {1, 0, 0}, plate);
       },
       "a sunlit floor");
 }
@@ -359,7 +359,7 @@ TEST_F(IrradianceCacheGl, AWallBesideAPlateThatShines) {
     room.expect(
         seen.image,
         [&](const glm::dvec3& p) {
-          return 1.5 * kPi * twin::pointToPolygon(p, {1, 0, 0}, plate);
+          return 1.5 * kPi * reference::pointToPolygon(p, {1, 0, 0}, plate);
         },
         "a plate that shines");
   }
@@ -391,7 +391,7 @@ TEST_F(CacheGatherGl, AWallBesideAFloorUnderTheSunALampAndASpot) {
         room.expect(
             picture(room.builder.scene(), room.camera, ofMap).image,
             [&](const glm::dvec3& p) {
-              return 0.8 * kPi * twin::pointToPolygon(p, {1, 0, 0}, plate);
+              return 0.8 * kPi * reference::pointToPolygon(p, {1, 0, 0}, plate);
             },
             "a sunlit floor, gathered", 0.03);
       }
@@ -432,7 +432,7 @@ TEST_F(IrradianceCacheGl, ItsFloorsAtPixelsAndFromCells) {
     room.expect(
         ofWall(dynamic_cast<const IrradianceCacheFrame*>(renderer.technique())->gatheredAtPixels()),
         [&](const glm::dvec3& p) {
-          return 0.8 * kPi * twin::pointToPolygon(p, {1, 0, 0}, plate);
+          return 0.8 * kPi * reference::pointToPolygon(p, {1, 0, 0}, plate);
         },
         "a sunlit floor, gathered at each pixel", 0.03);
   }
@@ -638,7 +638,7 @@ TEST_F(CacheGatherGl, AWallBesideAPlateThatShines) {
       room.expect(
           seen.image,
           [&](const glm::dvec3& p) {
-            return 1.5 * kPi * twin::pointToPolygon(p, {1, 0, 0}, plate);
+            return 1.5 * kPi * reference::pointToPolygon(p, {1, 0, 0}, plate);
           },
           "a plate that shines, gathered");
     }
@@ -1336,7 +1336,7 @@ TEST_F(IrradianceCacheKept, AFewPathsAreEnoughOfACascade) {
   renderer.renderToTheEnd(camera);
   int records = 0;
   for (const glm::ivec2& pixel : {glm::ivec2(20, 20), glm::ivec2(32, 32), glm::ivec2(41, 13)})
-    for (const PixelShare& share : renderer.ask(library(), camera, pixel).shares) {
+    for (const PixelShare& share : renderer.inspect(library(), camera, pixel).shares) {
       if (!share.name.starts_with("record")) continue;
       ++records;
       EXPECT_TRUE(share.name.ends_with("cascade 1")) << share.name << " " << share.weight.value_or(0.0);
@@ -1371,7 +1371,7 @@ TEST_F(IrradianceCacheKept, CascadesAreBlendedEvenly) {
   int between = 0;
   double worst = 0.0;
   for (int y = 24; y < 64; ++y) {
-    const PixelAnswer answer = renderer.ask(library(), camera, {32, y});
+    const PixelInspection answer = renderer.inspect(library(), camera, {32, y});
     double finer = 0.0, all = 0.0;
     for (const PixelShare& share : answer.shares)
       if (share.name.starts_with("record")) {

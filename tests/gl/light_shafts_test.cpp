@@ -167,7 +167,7 @@ TEST_F(LightShaftsTest, EachStepCountsTwoThirdsOfACellOfPath) {
     settings.blocking = false;
     settings.storage = LpvSettings::Storage::full;
     const LightPropagationVolume lpv = test::runVolume(library(), capabilities(), settings, inputs);
-    const double path = 2.0 / 3.0 * twin::totalFlux(test::readVolume(lpv.result(), inputs)[0][1]);
+    const double path = 2.0 / 3.0 * reference::totalFlux(test::readVolume(lpv.result(), inputs)[0][1]);
     EXPECT_NEAR(path / (2.0 / 3.0 * (1.0 + 1.138208 * steps)), 1.0, 1e-5) << steps;
   }
 }
@@ -229,10 +229,10 @@ TEST_F(LightShaftsTest, AboveAFloorTheVolumesLightGrowsWithTheSteps) {
     settings.blocking = false;
     settings.storage = LpvSettings::Storage::full;
     const LightPropagationVolume lpv = test::runVolume(library(), capabilities(), settings, inputs);
-    const twin::Volume volume = test::readVolume(lpv.result(), inputs)[0][1];
+    const reference::Volume volume = test::readVolume(lpv.result(), inputs)[0][1];
     const std::vector<double> chain = fluenceAboveFloor(steps, 4);
     for (int layer = 0; layer < 4; ++layer) {  // in the middle, as far from the border as there are steps
-      const double here = 2.0 / 3.0 * twin::flux(volume.at({kCells / 2, kFloor + layer, kCells / 2}));
+      const double here = 2.0 / 3.0 * reference::flux(volume.at({kCells / 2, kFloor + layer, kCells / 2}));
       EXPECT_NEAR(here, chain[static_cast<std::size_t>(layer)], 1e-5) << steps << " steps, layer " << layer;
     }
   }

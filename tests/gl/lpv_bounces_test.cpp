@@ -1,5 +1,5 @@
 // Light that is reflected several times, and surfels that the camera sees, in the light propagation volume on GL:
-// against the double-precision twin and against what must hold whatever the scene.
+// against the double-precision reference implementation and against what must hold whatever the scene.
 #include "lpv/lpv_frame.hpp"
 #include "support/gl_fixture.hpp"
 #include "support/lpv_on_gl.hpp"
@@ -17,9 +17,9 @@
 namespace lucerna {
 namespace {
 
+using reference::VolumeRgb;
 using test::RsmTexel;
 using test::RsmTextures;
-using twin::VolumeRgb;
 using Storage = LpvSettings::Storage;
 
 class LpvMoreLight : public test::SharedProgramsTest {
@@ -42,7 +42,7 @@ class LpvMoreLight : public test::SharedProgramsTest {
     return test::runVolume(library(), capabilities(), s, inputs);
   }
   /// Coloured surfels, off the borders of cells (multiples of 1/4) for axis-aligned normals, so that 32 bits choose
-  /// the twin's cell.
+  /// the reference implementation's cell.
   static std::vector<RsmTexel> randomTexels(unsigned seed, int count) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
@@ -88,9 +88,9 @@ class LpvBounces : public LpvMoreLight {
   }
 };
 
-TEST_F(LpvBounces, TheClampGainIsTheOneThatTheShaderDividesOut) { EXPECT_NEAR(twin::clampGain(), 1.138208, 5e-7); }
+TEST_F(LpvBounces, TheClampGainIsTheOneThatTheShaderDividesOut) { EXPECT_NEAR(reference::clampGain(), 1.138208, 5e-7); }
 
-TEST_F(LpvBounces, AgainstTheTwin) {
+TEST_F(LpvBounces, AgainstTheReference) {
   const std::vector<RsmTexel> texels = randomTexels(1, 1500);
   constexpr double kTexelArea = 0.05;
   const RsmTextures textures(texels, kTexelArea);
@@ -98,19 +98,19 @@ TEST_F(LpvBounces, AgainstTheTwin) {
     for (const int bounces : {2, 4}) {
       LpvSettings s = settings(10, 4, bounces, cascades);
       const LpvInputs inputs{{textures.outputs()}, place(s), 3.5f};
-      const std::vector<twin::Vpl> vpls = test::vplsOf(texels, kTexelArea);
+      const std::vector<reference::Vpl> vpls = test::vplsOf(texels, kTexelArea);
       std::vector<VolumeRgb> expected, once;
       for (const Cascade& cascade : inputs.cascades) {
-        const twin::GridSpec grid = test::gridOf(cascade, 10);
-        VolumeRgb injected = twin::makeVolumeRgb(grid);
-        twin::inject(injected, vpls);
-        twin::Volume geometry(twin::geometryGrid(grid));
-        twin::injectSurfels(geometry, grid, vpls);
-        const VolumeRgb reflectance = twin::injectReflectance(grid, vpls);
-        expected.push_back(twin::propagateBounces(injected, 4, bounces, geometry, reflectance).light);
-        once.push_back(twin::propagateBounces(injected, 4, 1, geometry, reflectance).light);
-        EXPECT_GT(twin::totalFlux(expected.back()).y,
-                  1.05 * twin::totalFlux(once.back()).y);  // there is something to see
+        const reference::GridSpec grid = test::gridOf(cascade, 10);
+        VolumeRgb injected = reference::makeVolumeRgb(grid);
+        reference::inject(injected, vpls);
+        reference::Volume geometry(reference::geometryGrid(grid));
+        reference::injectSurfels(geometry, grid, vpls);
+        const VolumeRgb reflectance = reference::injectReflectance(grid, vpls);
+        expected.push_back(reference::propagateBounces(injected, 4, bounces, geometry, reflectance).light);
+        once.push_back(reference::propagateBounces(injected, 4, 1, geometry, reflectance).light);
+        EXPECT_GT(reference::totalFlux(expected.back()).y,
+                  1.05 * reference::totalFlux(once.back()).y);  // there is something to see
       }
       for (const LpvPropagate propagate : {LpvPropagate::compute, LpvPropagate::layered})
         for (const Storage storage : {Storage::full, Storage::half}) {
@@ -131,20 +131,20 @@ TEST_F(LpvBounces, AgainstTheTwin) {
 
 TEST_F(LpvBounces, JoinedCascadesBounceAllTheirLight) {
   // With a hand-over the sum lies in two parts: one cascade's light must come back whole. Joined, one cascade's part
-  // that no finer grid takes over is the same as without; so the coarsest is held against the twin.
+  // that no finer grid takes over is the same as without; so the coarsest is held against the reference implementation.
   const std::vector<RsmTexel> texels = randomTexels(2, 800);
   const RsmTextures textures(texels, 0.05);
   LpvSettings s = settings(8, 5, 3, 2);
   s.handOver = 2;
   const LpvInputs inputs{{textures.outputs()}, place(s), 1.0f};
-  const std::vector<twin::Vpl> vpls = test::vplsOf(texels, 0.05);
-  const twin::GridSpec grid = test::gridOf(inputs.cascades[1], 8);
-  VolumeRgb injected = twin::makeVolumeRgb(grid);
-  twin::inject(injected, vpls);
-  twin::Volume geometry(twin::geometryGrid(grid));
-  twin::injectSurfels(geometry, grid, vpls);
+  const std::vector<reference::Vpl> vpls = test::vplsOf(texels, 0.05);
+  const reference::GridSpec grid = test::gridOf(inputs.cascades[1], 8);
+  VolumeRgb injected = reference::makeVolumeRgb(grid);
+  reference::inject(injected, vpls);
+  reference::Volume geometry(reference::geometryGrid(grid));
+  reference::injectSurfels(geometry, grid, vpls);
   const VolumeRgb expected =
-      twin::propagateBounces(injected, 5, 3, geometry, twin::injectReflectance(grid, vpls)).light;
+      reference::propagateBounces(injected, 5, 3, geometry, reference::injectReflectance(grid, vpls)).light;
   EXPECT_LT(test::relativeError(expected, test::readVolume(run(s, inputs).result(), inputs)[1]), 1e-5);
 }
 
@@ -163,13 +163,13 @@ TEST_F(LpvBounces, TheSumOfAllBouncesIsBounded) {
       const LpvSettings s = settings(10, kSteps, bounces);
       const LpvInputs inputs{{textures.outputs()}, place(s), 1.0f};
       const VolumeRgb light = test::readVolume(run(s, inputs).result(), inputs)[0];
-      const glm::dvec3 flux = twin::totalFlux(light);
+      const glm::dvec3 flux = reference::totalFlux(light);
       if (bounces == 1) once = flux;
       report(fmt::format("albedo {}, {} bounces: light over that of one", rho, bounces), flux.x / once.x);
       for (int channel = 0; channel < 3; ++channel) {
         const double source = std::ldexp(1.0, -channel);  // red 1, green 1/2, blue 1/4
         ASSERT_TRUE(std::isfinite(flux[channel]));
-        EXPECT_LE(flux[channel], source * series * (1.0 + twin::clampGain() * kSteps));
+        EXPECT_LE(flux[channel], source * series * (1.0 + reference::clampGain() * kSteps));
         EXPECT_GE(flux[channel], previous[channel] * (1.0 - 1e-6));
         EXPECT_NEAR(flux[channel] / flux.x, source, 1e-5);  // the walls are grey
         if (rho == 0.0f) {
@@ -184,20 +184,20 @@ TEST_F(LpvBounces, TheSumOfAllBouncesIsBounded) {
 }
 
 TEST_F(LpvBounces, TheTwinsSourcesFollowTheGeometricSeries) {
-  // Each bounce adds rho times the one before at most, also in the twin, bounce by bounce.
+  // Each bounce adds rho times the one before at most, also in the reference implementation, bounce by bounce.
   for (const float rho : {0.5f, 0.99f, 1.0f}) {
     const std::vector<RsmTexel> texels = closedBox(rho);
-    const std::vector<twin::Vpl> vpls = test::vplsOf(texels, 1.0);
-    const twin::GridSpec grid{glm::ivec3(10), glm::dvec3(-5.0), 1.0};
-    VolumeRgb injected = twin::makeVolumeRgb(grid);
-    twin::inject(injected, vpls);
-    twin::Volume geometry(twin::geometryGrid(grid));
-    twin::injectSurfels(geometry, grid, vpls);
-    const VolumeRgb reflectance = twin::injectReflectance(grid, vpls);
+    const std::vector<reference::Vpl> vpls = test::vplsOf(texels, 1.0);
+    const reference::GridSpec grid{glm::ivec3(10), glm::dvec3(-5.0), 1.0};
+    VolumeRgb injected = reference::makeVolumeRgb(grid);
+    reference::inject(injected, vpls);
+    reference::Volume geometry(reference::geometryGrid(grid));
+    reference::injectSurfels(geometry, grid, vpls);
+    const VolumeRgb reflectance = reference::injectReflectance(grid, vpls);
     double before = 0.0, added = 0.0;
     for (int bounces = 1; bounces <= 6; ++bounces) {
       const double source =
-          twin::totalFlux(twin::propagateBounces(injected, 8, bounces, geometry, reflectance).source).x;
+          reference::totalFlux(reference::propagateBounces(injected, 8, bounces, geometry, reflectance).source).x;
       if (bounces > 1) {
         EXPECT_GT(source - before, 0.0);
         EXPECT_LE(source - before, static_cast<double>(rho) * added * (1.0 + 1e-9)) << rho << ", bounce " << bounces;
@@ -231,7 +231,7 @@ TEST_F(LpvBounces, OneBounceCostsNothingAndMoreNeedSurfels) {
 
 class LpvViews : public LpvMoreLight {
  protected:
-  static std::vector<twin::Volume> geometryOf(const LpvSettings& s, const LpvInputs& inputs) {
+  static std::vector<reference::Volume> geometryOf(const LpvSettings& s, const LpvInputs& inputs) {
     LightPropagationVolume lpv(library(), capabilities(), s);
     lpv.place(inputs);
     lpv.fillGeometryVolume(inputs);
@@ -252,16 +252,16 @@ TEST_F(LpvViews, OfASurfaceSeenTwiceTheLongerVectorCounts) {
         inputs.rsms.push_back(lightMap.outputs());
         inputs.views.push_back(cameraMap.outputs());
       }
-      const std::vector<twin::Volume> actual = geometryOf(s, inputs);
+      const std::vector<reference::Volume> actual = geometryOf(s, inputs);
       for (std::size_t k = 0; k < actual.size(); ++k) {
-        const twin::GridSpec grid = test::gridOf(inputs.cascades[k], 8);
-        twin::Volume expected(twin::geometryGrid(grid)), camera(twin::geometryGrid(grid));
-        if (surfels != LpvSurfels::camera) twin::injectSurfels(expected, grid, test::vplsOf(lit, 0.05));
-        if (surfels != LpvSurfels::rsm) twin::injectSurfels(camera, grid, test::vplsOf(seen, 0.08));
-        twin::mergeByGreatest(expected, camera);
+        const reference::GridSpec grid = test::gridOf(inputs.cascades[k], 8);
+        reference::Volume expected(reference::geometryGrid(grid)), camera(reference::geometryGrid(grid));
+        if (surfels != LpvSurfels::camera) reference::injectSurfels(expected, grid, test::vplsOf(lit, 0.05));
+        if (surfels != LpvSurfels::rsm) reference::injectSurfels(camera, grid, test::vplsOf(seen, 0.08));
+        reference::mergeByGreatest(expected, camera);
         EXPECT_LT(test::relativeError(expected, actual[k]), 1e-5)
             << static_cast<int>(surfels) << ", cascade " << k << ", twice " << twice;
-        EXPECT_GT(twin::length(expected.cells[grid.cellCount() / 2]) + twin::totalFlux(expected), 1.0);
+        EXPECT_GT(reference::length(expected.cells[grid.cellCount() / 2]) + reference::totalFlux(expected), 1.0);
       }
     }
 }
@@ -282,9 +282,9 @@ TEST_F(LpvViews, TheAlbedoOfTheLongerVectorCounts) {
   const auto gained = [&] {
     LpvInputs inputs{{lightMap.outputs()}, place(s), 1.0f, glm::vec3(0.0f), {cameraMap.outputs()}};
     s.bounces = 1;
-    const glm::dvec3 once = twin::totalFlux(test::readVolume(run(s, inputs).result(), inputs)[0]);
+    const glm::dvec3 once = reference::totalFlux(test::readVolume(run(s, inputs).result(), inputs)[0]);
     s.bounces = 2;
-    return twin::totalFlux(test::readVolume(run(s, inputs).result(), inputs)[0]) - once;
+    return reference::totalFlux(test::readVolume(run(s, inputs).result(), inputs)[0]) - once;
   };
   const glm::dvec3 both = gained();
   EXPECT_NEAR(both.x, 0.0, 1e-6);
@@ -318,7 +318,7 @@ TEST_F(LpvViews, TheCamerasSurfelsHaveTheAreaOfWhatItSees) {
             .cellSize;
     double area = 0.0;
     for (const glm::vec4& potential : volumeOf(renderer.technique())->geometryVolume()->readRgba())
-      area += static_cast<double>(potential.x) / twin::kLobeBand0 * cell * cell;
+      area += static_cast<double>(potential.x) / reference::kLobeBand0 * cell * cell;
     report(fmt::format("tilt {}: area seen over the plate's", tilt), area / 12.0);
     EXPECT_NEAR(area / 12.0, 1.0, 0.01);
     const auto left = renderer.leftOut();

@@ -1,8 +1,8 @@
 // Each deviation of engine/settings/deviations.cpp by its own known figure: what is right without it, and what it does
 // when it is on.
 //
-// Switches are turned by name, as on the command line. Where the twin has the matching option, the GL is held against
-// it too. Expected values follow from the formulas beside them [Kaplanyan2010; Kirsch2010].
+// Switches are turned by name, as on the command line. Where the reference implementation has the matching option, the
+// GL is held against it too. Expected values follow from the formulas beside them [Kaplanyan2010; Kirsch2010].
 #include "render/deviations.hpp"
 #include "rsm/rsm_gather.hpp"
 #include "shared/frame.h"
@@ -21,15 +21,15 @@
 namespace lucerna {
 namespace {
 
+using reference::VolumeRgb;
 using test::kFullTolerance;
 using test::Probe;
 using test::report;
 using test::RsmTexel;
 using test::RsmTextures;
 using test::unitCascade;
-using twin::VolumeRgb;
 
-const double kFront = twin::frontSolidAngle(), kSide = twin::sideSolidAngle();
+const double kFront = reference::frontSolidAngle(), kSide = reference::sideSolidAngle();
 
 /// A light that injection moves to the middle of a unit cell. Its area is as good as none.
 RsmTexel lightIn(const glm::ivec3& cell, const glm::vec3& normal, const glm::vec3& flux) {
@@ -118,27 +118,29 @@ class LpvDeviations : public test::SharedProgramsTest {
     }
     return Lights(std::move(texels), unitCascade(cells), 0.1);
   }
-  /// The GL with the settings beside the twin with the options, sums of all steps.
-  static double errorOfTwin(const LpvSettings& s, const twin::KernelOptions& options) {
+  /// The GL with the settings beside the reference implementation with the options, sums of all steps.
+  static double errorOfReference(const LpvSettings& s, const reference::KernelOptions& options) {
     const int cells = s.cascades.cells;
     const Lights lights = randomLights(cells, 11);
-    const std::vector<twin::Vpl> vpls = test::vplsOf(lights.texels, lights.texelArea);
-    const twin::GridSpec grid = test::gridOf(lights.inputs.cascades[0], cells);
-    VolumeRgb injected = twin::makeVolumeRgb(grid);
-    twin::inject(injected, vpls);
-    twin::Volume geometry(twin::geometryGrid(grid));
-    twin::injectSurfels(geometry, grid, vpls);
+    const std::vector<reference::Vpl> vpls = test::vplsOf(lights.texels, lights.texelArea);
+    const reference::GridSpec grid = test::gridOf(lights.inputs.cascades[0], cells);
+    VolumeRgb injected = reference::makeVolumeRgb(grid);
+    reference::inject(injected, vpls);
+    reference::Volume geometry(reference::geometryGrid(grid));
+    reference::injectSurfels(geometry, grid, vpls);
     const VolumeRgb expected =
-        twin::propagate(injected, s.iterations, options, s.blocking ? &geometry : nullptr).accumulated;
+        reference::propagate(injected, s.iterations, options, s.blocking ? &geometry : nullptr).accumulated;
     return test::relativeError(expected, resultOf(s, lights));
   }
-  /// A kernel's deviation in both ways to propagate: the twin with the option is met, the twin without is not.
-  static void expectKernelOfTwin(const std::string& name, const twin::KernelOptions& options, float amplifier = 1.0f) {
+  /// A kernel's deviation in both ways to propagate: the reference implementation with the option is met, the reference
+  /// implementation without is not.
+  static void expectKernelOfReference(const std::string& name, const reference::KernelOptions& options,
+                                      float amplifier = 1.0f) {
     LpvSettings s = settings(7, 4, true);
     s.amplifier = amplifier;
     for (const LpvPropagate propagate : {LpvPropagate::compute, LpvPropagate::layered}) {
-      EXPECT_LT(errorOfTwin(with(s, name, propagate), options), kFullTolerance) << nameOf(propagate);
-      EXPECT_GT(errorOfTwin(with(s, name, propagate), {}), 1e-3) << nameOf(propagate);
+      EXPECT_LT(errorOfReference(with(s, name, propagate), options), kFullTolerance) << nameOf(propagate);
+      EXPECT_GT(errorOfReference(with(s, name, propagate), {}), 1e-3) << nameOf(propagate);
     }
   }
   /// Band-0 gain of the second step over the first in the middle of a homogeneous isotropic field.
@@ -185,7 +187,7 @@ TEST_F(LpvDeviations, EachOneHasATestHere) {
 
 TEST_F(LpvDeviations, SideSolidAngle) {
   const LpvSettings off = settings(5, 0);
-  const double slipped = 1.0 + 4.0 * (twin::kSlippedSideSolidAngle - kSide) / (2.0 * kPi / 3.0);
+  const double slipped = 1.0 + 4.0 * (reference::kSlippedSideSolidAngle - kSide) / (2.0 * kPi / 3.0);
   EXPECT_NEAR(slipped, 1.0000191, 5e-8);
   for (const LpvPropagate propagate : {LpvPropagate::compute, LpvPropagate::layered}) {
     LpvSettings right = off;
@@ -199,7 +201,7 @@ TEST_F(LpvDeviations, SideSolidAngle) {
   const Lights lights(source, unitCascade(61));
   const auto flux = [&](bool on, int steps) {
     const LpvSettings s = settings(61, steps);
-    return twin::totalFlux(resultOf(on ? with(s, "lpv.side-solid-angle") : s, lights)[0]);
+    return reference::totalFlux(resultOf(on ? with(s, "lpv.side-solid-angle") : s, lights)[0]);
   };
   const double right = flux(false, 30) - flux(false, 29), on = flux(true, 30) - flux(true, 29);
   EXPECT_NEAR(right, 1.0, 3e-5);
@@ -219,7 +221,7 @@ TEST_F(LpvDeviations, FourPiKernel) {
       EXPECT_NEAR(isotropicGain(with(s, "lpv.four-pi-kernel", propagate)), amplifier / 4.0, 2e-6)
           << amplifier << nameOf(propagate);
     }
-  expectKernelOfTwin("lpv.four-pi-kernel", twin::fourPiKernel(static_cast<double>(3.8f)), 3.8f);
+  expectKernelOfReference("lpv.four-pi-kernel", reference::fourPiKernel(static_cast<double>(3.8f)), 3.8f);
 }
 
 TEST_F(LpvDeviations, SideDirections) {
@@ -247,7 +249,7 @@ TEST_F(LpvDeviations, SideDirections) {
     EXPECT_NEAR(along(2, right, false) / along(0, right, false), 1.0, 1e-5);
     EXPECT_NEAR(along(2, on, false) / along(0, on, false), 2.17, 0.005);
   }
-  expectKernelOfTwin("lpv.side-directions", twin::componentProductKernel());
+  expectKernelOfReference("lpv.side-directions", reference::componentProductKernel());
 }
 
 TEST_F(LpvDeviations, FewerSteps) {
@@ -255,9 +257,10 @@ TEST_F(LpvDeviations, FewerSteps) {
   // two.
   const Lights lights({lightIn(glm::ivec3(1), {0, 0, 1}, glm::vec3(1.0f))}, unitCascade(3));
   const LpvSettings s = settings(3, 3);
-  EXPECT_NEAR(twin::totalFlux(resultOf(s, lights)[0]), 1.0 + 1.138208 + 0.880462 + 0.566864, 3e-6);
+  EXPECT_NEAR(reference::totalFlux(resultOf(s, lights)[0]), 1.0 + 1.138208 + 0.880462 + 0.566864, 3e-6);
   for (const LpvPropagate propagate : {LpvPropagate::compute, LpvPropagate::layered})
-    EXPECT_NEAR(twin::totalFlux(resultOf(with(s, "lpv.fewer-steps", propagate), lights)[0]), 1.138208 + 0.880462, 3e-6)
+    EXPECT_NEAR(reference::totalFlux(resultOf(with(s, "lpv.fewer-steps", propagate), lights)[0]), 1.138208 + 0.880462,
+                3e-6)
         << nameOf(propagate);
 }
 
@@ -282,15 +285,15 @@ TEST_F(LpvDeviations, BlockFirstStep) {
   };
   EXPECT_NEAR(ahead + 4.0 * across(false), 1.138208, 1e-6);
   const LpvSettings s = settings(8, 1, true);
-  const auto firstStep = [&](const LpvSettings& of) { return twin::totalFlux(resultOf(of, lights)[0]) - 1.0; };
+  const auto firstStep = [&](const LpvSettings& of) { return reference::totalFlux(resultOf(of, lights)[0]) - 1.0; };
   EXPECT_NEAR(firstStep(s), 1.138208, 3e-6);
   for (const LpvPropagate propagate : {LpvPropagate::compute, LpvPropagate::layered})
     EXPECT_NEAR(firstStep(with(s, "lpv.block-first-step", propagate)), ahead + 4.0 * across(true), 3e-6)
         << nameOf(propagate);
   report("first step of a light on a wall, lpv.block-first-step", firstStep(with(s, "lpv.block-first-step")));
-  twin::KernelOptions options;
+  reference::KernelOptions options;
   options.blockFirstStep = true;
-  expectKernelOfTwin("lpv.block-first-step", options);
+  expectKernelOfReference("lpv.block-first-step", options);
 }
 
 TEST_F(LpvDeviations, BlockingDirection) {
@@ -308,7 +311,7 @@ TEST_F(LpvDeviations, BlockingDirection) {
     };
     const double up = x == 4 ? passes(1.0, 1.0) : 1.0, down = x == 3 ? passes(1.0, -1.0) : 1.0;
     const double difference = kFront * (up - down) + 4.0 * kSide * (passes(0.5, b) - passes(0.5, -b));
-    return twin::kLobeBand1 / kPi * (2.0 / (4.0 * kPi)) * difference;  // intensity of flux 2 a cell
+    return reference::kLobeBand1 / kPi * (2.0 / (4.0 * kPi)) * difference;  // intensity of flux 2 a cell
   };
   const auto measured = [&](LpvSettings s, int x) {
     const auto at = [&](int steps) {
@@ -325,9 +328,9 @@ TEST_F(LpvDeviations, BlockingDirection) {
           << x << nameOf(propagate);
     EXPECT_GT(std::abs(expected(x, 1.0) - expected(x, -1.0)), 0.01);
   }
-  twin::KernelOptions options;
+  reference::KernelOptions options;
   options.blockAlongTravel = true;
-  expectKernelOfTwin("lpv.blocking-direction", options);
+  expectKernelOfReference("lpv.blocking-direction", options);
 }
 
 TEST_F(LpvDeviations, SurfelArea) {
@@ -340,7 +343,7 @@ TEST_F(LpvDeviations, SurfelArea) {
     lights.inputs.lightPosition = {2.0f, 70.0f, 2.0f};
     const auto area = [&](const LpvSettings& s) {
       const LightPropagationVolume lpv = run(s, lights.inputs);
-      return test::readGeometryVolume(lpv, lights.inputs)[0].at(glm::ivec3(2)).c0 / twin::kLobeBand0;
+      return test::readGeometryVolume(lpv, lights.inputs)[0].at(glm::ivec3(2)).c0 / reference::kLobeBand0;
     };
     const LpvSettings s = settings(4, 2, true);
     EXPECT_NEAR(area(s), 0.098 / cosine, 1e-6);
@@ -372,20 +375,22 @@ TEST_F(LpvDeviations, Truncate) {
            {0, 0, 1, 1},
            glm::vec3(1.0f)});
     const Lights lights(texels, placed, 0.1);
-    const std::vector<twin::Vpl> vpls = test::vplsOf(texels, 0.1);
+    const std::vector<reference::Vpl> vpls = test::vplsOf(texels, 0.1);
     const LpvSettings published = with(s, "lpv.truncate");
     for (const bool on : {false, true}) {
       const LightPropagationVolume lpv = run(on ? published : s, lights.inputs);
       for (const bool expectedOn : {false, true}) {
-        twin::GridSpec grid = twin::cameraGrid(camera, direction, glm::ivec3(kCells), 1.625,
-                                               expectedOn ? twin::SnapRule::truncate : twin::SnapRule::floor)
-                                  .grid;
+        reference::GridSpec grid =
+            reference::cameraGrid(camera, direction, glm::ivec3(kCells), 1.625,
+                                  expectedOn ? reference::SnapRule::truncate : reference::SnapRule::floor)
+                .grid;
         const bool onRaster = glm::length(grid.minimum / 1.625 - glm::round(grid.minimum / 1.625)) < 1e-9;
         EXPECT_EQ(onRaster, !expectedOn);
-        VolumeRgb injected = twin::makeVolumeRgb(grid);
-        twin::inject(injected, vpls);
-        twin::Volume geometry(twin::geometryGrid(grid));
-        twin::injectSurfels(geometry, grid, vpls, expectedOn ? twin::IndexRule::truncate : twin::IndexRule::floor);
+        VolumeRgb injected = reference::makeVolumeRgb(grid);
+        reference::inject(injected, vpls);
+        reference::Volume geometry(reference::geometryGrid(grid));
+        reference::injectSurfels(geometry, grid, vpls,
+                                 expectedOn ? reference::IndexRule::truncate : reference::IndexRule::floor);
         const double error = test::relativeError(injected, test::readVolume(lpv.injected(), lights.inputs)[0]);
         const double errorOfGeometry = test::relativeError(geometry, test::readGeometryVolume(lpv, lights.inputs)[0]);
         if (on == expectedOn) {
@@ -406,7 +411,7 @@ TEST_F(LpvDeviations, Truncate) {
   };
   LpvSettings unit = settings(4, 2, true);
   EXPECT_EQ(blocks(unit), 0.0);
-  EXPECT_NEAR(blocks(with(unit, "lpv.truncate")), twin::kLobeBand0, 1e-6);
+  EXPECT_NEAR(blocks(with(unit, "lpv.truncate")), reference::kLobeBand0, 1e-6);
 }
 
 TEST_F(LpvDeviations, FirstCell) {
@@ -419,21 +424,21 @@ TEST_F(LpvDeviations, FirstCell) {
   for (const LpvFill fill : {LpvFill::layered, LpvFill::fixed}) {
     LpvSettings right = s;
     right.fill = fill;
-    EXPECT_NEAR(twin::totalFlux(resultOf(right, lights)[0]), 64.0, 1e-4);
-    EXPECT_NEAR(twin::totalFlux(resultOf(with(right, "lpv.first-cell"), lights)[0]), 27.0, 1e-4);
+    EXPECT_NEAR(reference::totalFlux(resultOf(right, lights)[0]), 64.0, 1e-4);
+    EXPECT_NEAR(reference::totalFlux(resultOf(with(right, "lpv.first-cell"), lights)[0]), 27.0, 1e-4);
   }
   const Lights surfel({{{0.0f, 2.0f, 2.0f, 1.0f}, {1, 0, 0, 1}, glm::vec3(0.0f)}}, unitCascade(4));
   const auto blocks = [&](const LpvSettings& of) {
     return test::readGeometryVolume(run(of, surfel.inputs), surfel.inputs)[0].at({0, 2, 2}).c0;
   };
-  EXPECT_NEAR(blocks(settings(4, 2, true)), twin::kLobeBand0, 1e-6);
+  EXPECT_NEAR(blocks(settings(4, 2, true)), reference::kLobeBand0, 1e-6);
   EXPECT_EQ(blocks(with(settings(4, 2, true), "lpv.first-cell")), 0.0);
-  // Against the twin's bounds test.
+  // Against the reference implementation's bounds test.
   const Lights random = randomLights(6, 3);
-  VolumeRgb expected = twin::makeVolumeRgb(test::gridOf(random.inputs.cascades[0], 6));
-  twin::InjectionOptions options;
+  VolumeRgb expected = reference::makeVolumeRgb(test::gridOf(random.inputs.cascades[0], 6));
+  reference::InjectionOptions options;
   options.lowestCell = 1;
-  twin::inject(expected, test::vplsOf(random.texels, 0.1), options);
+  reference::inject(expected, test::vplsOf(random.texels, 0.1), options);
   EXPECT_LT(test::relativeError(expected, resultOf(with(settings(6, 0), "lpv.first-cell"), random)), kFullTolerance);
 }
 
@@ -525,9 +530,9 @@ struct SmoothField {
     all = placeCascades(c, bounds, glm::dvec3(0.0), glm::dvec3(0.0));
     for (std::size_t k = 0; k < all.size(); ++k)
       for (int i = 0; i < kCells * kCells * kCells; ++i) {
-        const twin::GridSpec grid = test::gridOf(all[k], kCells);
+        const reference::GridSpec grid = test::gridOf(all[k], kCells);
         const glm::dvec3 p = grid.centre({i % kCells, i / kCells % kCells, i / (kCells * kCells)});
-        if (k > 0 && twin::cellOf(test::gridOf(all[k - 1], kCells), p)) continue;
+        if (k > 0 && reference::cellOf(test::gridOf(all[k - 1], kCells), p)) continue;
         const auto flux = static_cast<float>(std::exp(-glm::dot(p, p) / 200.0) * std::pow(grid.cellSize, 3.0));
         for (const float way : {1.0f, -1.0f})
           texels.push_back({glm::vec4(0.999f * glm::vec3(p), 1.0f), {0, 0, way, 1}, glm::vec3(flux)});
@@ -567,16 +572,16 @@ TEST_F(LpvDeviations, Unjoined) {
     EXPECT_NEAR(unjoined, cascades == 2 ? 0.559 : 0.329, 0.002);
     EXPECT_NEAR(summed, sum, 1e-5);
   }
-  // Against the twin: propagated each by itself, then blended or summed.
+  // Against the reference implementation: propagated each by itself, then blended or summed.
   const LpvInputs inputs{{textures.outputs()}, field.all, 1.0f};
-  const std::vector<twin::Vpl> vpls = test::vplsOf(field.texels, 0.0);
-  std::vector<twin::Volume> cascades;
-  twin::CascadeBlend blend{{}, static_cast<double>(s.blendBand)};
+  const std::vector<reference::Vpl> vpls = test::vplsOf(field.texels, 0.0);
+  std::vector<reference::Volume> cascades;
+  reference::CascadeBlend blend{{}, static_cast<double>(s.blendBand)};
   std::vector<double> cellSizes;
   for (const Cascade& cascade : field.all) {
-    VolumeRgb injected = twin::makeVolumeRgb(test::gridOf(cascade, SmoothField::kCells));
-    twin::inject(injected, vpls);
-    cascades.push_back(twin::propagate(injected[0], s.iterations).accumulated);
+    VolumeRgb injected = reference::makeVolumeRgb(test::gridOf(cascade, SmoothField::kCells));
+    reference::inject(injected, vpls);
+    cascades.push_back(reference::propagate(injected[0], s.iterations).accumulated);
     blend.centres.push_back(cascade.centre);
     cellSizes.push_back(cascade.cellSize);
   }
@@ -588,8 +593,8 @@ TEST_F(LpvDeviations, Unjoined) {
       test::probeIrradiance(library(), run(with(s, "lpv.sum-cascades"), inputs), probes);
   for (std::size_t i = 0; i < probes.size(); ++i) {
     const glm::dvec3 p(probes[i].position), n(probes[i].normal);
-    const auto blendedAt = [&](const glm::dvec3& at) { return twin::blendedIrradiance(cascades, blend, at, n); };
-    const auto summedAt = [&](const glm::dvec3& at) { return twin::irradianceSumOfCascades(cascades, at, n); };
+    const auto blendedAt = [&](const glm::dvec3& at) { return reference::blendedIrradiance(cascades, blend, at, n); };
+    const auto summedAt = [&](const glm::dvec3& at) { return reference::irradianceSumOfCascades(cascades, at, n); };
     EXPECT_NEAR(blended[i].x, blendedAt(p), 2e-5 * one + test::offByFilters(p, cellSizes, blendedAt)) << i;
     EXPECT_NEAR(summed[i].x, summedAt(p), 2e-5 * one + test::offByFilters(p, cellSizes, summedAt)) << i;
   }
@@ -615,7 +620,7 @@ TEST_F(LpvDeviations, Unwindowed) {
   EXPECT_NEAR(seen(on, one, probe), 7.0 / (3.0 * kPi), 1e-5);
   EXPECT_NEAR(seen(on, two, probe), 6.0 / (3.0 * kPi), 1e-5);
   EXPECT_EQ(seen(on, behind, probe), 0.0f);
-  // And against the twin's lookup.
+  // And against the reference implementation's lookup.
   const Lights random = randomLights(5, 9);
   const VolumeRgb injected = resultOf(s, random);
   for (int i = 0; i < 40; ++i) {
@@ -624,8 +629,8 @@ TEST_F(LpvDeviations, Unwindowed) {
     const glm::dvec3 p(at.position), n(at.normal);
     for (const bool unwindowed : {true, false}) {
       const auto expected = [&](const glm::dvec3& moved) {
-        return twin::irradiance(injected[0], moved, n,
-                                {unwindowed ? twin::Lookup::cosine : twin::Lookup::windowed, 0.0});
+        return reference::irradiance(injected[0], moved, n,
+                                     {unwindowed ? reference::Lookup::cosine : reference::Lookup::windowed, 0.0});
       };
       EXPECT_NEAR(seen(unwindowed ? on : s, random, at), expected(p),
                   1e-5 + test::offByFilters(p, std::array{1.0}, expected));
@@ -666,10 +671,10 @@ TEST_F(LpvDeviations, RsmFluxCosine) {
 class RsmGatherDeviations : public LpvDeviations {
  protected:
   /// Irradiance at one point of a map, with the engine's shaders.
-  static double gathered(const twin::RsmMap& map, RsmGather::Settings s, const glm::dvec3& position,
+  static double gathered(const reference::RsmMap& map, RsmGather::Settings s, const glm::dvec3& position,
                          const glm::dvec3& normal) {
     std::vector<glm::vec4> data[3];
-    for (const twin::RsmMap::Texel& t : map.texels) {
+    for (const reference::RsmMap::Texel& t : map.texels) {
       data[0].emplace_back(glm::vec3(t.position), 1.0f);
       data[1].emplace_back(glm::vec3(t.normal), static_cast<float>(t.cosine));
       data[2].emplace_back(glm::vec3(t.flux), static_cast<float>(map.texelArea() / std::max(t.cosine, 0.05)));
@@ -703,8 +708,8 @@ class RsmGatherDeviations : public LpvDeviations {
     return static_cast<double>(out.read<glm::vec4>()[0].x);
   }
   /// Texels that all lie in one place and face up: every sample sees the same.
-  static twin::RsmMap mapOfOnePlace(int side) {
-    twin::RsmMap map;
+  static reference::RsmMap mapOfOnePlace(int side) {
+    reference::RsmMap map;
     map.size = glm::ivec2(side);
     map.corner = {-0.5, -0.5, 0.0};
     map.texels.assign(static_cast<std::size_t>(side * side),
@@ -716,7 +721,7 @@ class RsmGatherDeviations : public LpvDeviations {
 TEST_F(RsmGatherDeviations, GatherWeight) {
   // Within r = 0.3 of a map of 64 texels there are pi (0.3 * 64)^2, each gives Phi/pi / d^2 to a point straight above.
   // xi^2 for xi leaves 2/3.
-  const twin::RsmMap map = mapOfOnePlace(64);
+  const reference::RsmMap map = mapOfOnePlace(64);
   RsmGather::Settings right = with("").of<RsmGather::Settings>();
   right.samples = 4096;
   right.nearField = RsmGather::Near::none;
@@ -731,7 +736,7 @@ TEST_F(RsmGatherDeviations, GatherWeight) {
 TEST_F(RsmGatherDeviations, Unbounded) {
   // One texel of area 1 and exitance 1, 0.1 of its side above its middle: the reach holds pi/4 of it. No receiver can
   // get more than the exitance; Phi/pi / d^2 gives 100/pi.
-  const twin::RsmMap map = mapOfOnePlace(1);
+  const reference::RsmMap map = mapOfOnePlace(1);
   RsmGather::Settings right = with("").of<RsmGather::Settings>(),
                       published = with("rsm.unbounded").of<RsmGather::Settings>();
   right.radius = published.radius = 0.5f;

@@ -15,9 +15,9 @@
 namespace lucerna {
 namespace {
 
+using reference::VolumeRgb;
 using test::RsmTexel;
 using test::RsmTextures;
-using twin::VolumeRgb;
 using Storage = LpvSettings::Storage;
 
 class LpvWays : public test::SharedProgramsTest {
@@ -83,7 +83,7 @@ TEST_F(LpvWays, LayeredPropagationIsTheComputeOne) {
             // Half storage: one unit in the last place, where the two are rounded to neighbours.
             EXPECT_LT(error, storage == Storage::full ? 1e-6 : 1e-3)
                 << cascades << " cascades, " << k << ", " << iterations << " steps, blocking " << blocking;
-            EXPECT_GT(twin::totalFlux(compute[k]).y, 0.1);
+            EXPECT_GT(reference::totalFlux(compute[k]).y, 0.1);
             worst = std::max(worst, error);
           }
         }
@@ -192,18 +192,18 @@ TEST_F(LpvWays, FixedPointGivesTheLayeredGridWithinItsQuantum) {
     const std::vector<VolumeRgb> fixed = test::readVolume(run(s, inputs).injected(), inputs);
     // 2^30 steps of flux for all texels, as white as can be, in one cell; each light is off by half a step at most.
     const double largest =
-        twin::kLobeBand1 / kPi *
+        reference::kLobeBand1 / kPi *
         static_cast<double>(textures.outputs().position.size().x * textures.outputs().position.size().y) * kTexelArea;
     for (std::size_t k = 0; k < fixed.size(); ++k) {
       const double quantum = static_cast<double>(kIrradiance) * std::ldexp(largest, -30);
-      twin::Volume lights(fixed[k][0].grid);
+      reference::Volume lights(fixed[k][0].grid);
       for (const RsmTexel& texel : texels) {
         const glm::dvec3 moved = glm::dvec3(texel.position) + 0.5 * lights.grid.cellSize * glm::dvec3(texel.normal);
-        if (const auto cell = twin::cellOf(lights.grid, moved)) lights.at(*cell).c0 += 1.0;
+        if (const auto cell = reference::cellOf(lights.grid, moved)) lights.at(*cell).c0 += 1.0;
       }
       for (std::size_t channel = 0; channel < 3; ++channel)
         for (std::size_t i = 0; i < lights.cells.size(); ++i) {
-          const twin::Sh apart = fixed[k][channel].cells[i] - layered[k][channel].cells[i];
+          const reference::Sh apart = fixed[k][channel].cells[i] - layered[k][channel].cells[i];
           // Half a step a light; the layered sum is rounded to 24 bits at each of them.
           const double allowed =
               lights.cells[i].c0 * (0.5 * quantum + std::ldexp(layered[k][channel].cells[i].c0, -23)) + 1e-12;
@@ -212,7 +212,7 @@ TEST_F(LpvWays, FixedPointGivesTheLayeredGridWithinItsQuantum) {
         }
       EXPECT_LT(test::relativeError(layered[k][1], fixed[k][1]), 1e-5)
           << k;  // albedo 1; blue, 1/200 of it, is as many times coarser
-      EXPECT_GT(twin::totalFlux(fixed[k]).y, 0.1);
+      EXPECT_GT(reference::totalFlux(fixed[k]).y, 0.1);
     }
   }
 }
@@ -245,14 +245,14 @@ TEST_F(LpvWays, CountedSurfelsAreTheDrawnOnes) {
       if (fill == LpvFill::atomic && !capabilities().shaderAtomicFloat) continue;
       s.fill = fill;
       const LightPropagationVolume counted = run(s, inputs);
-      const std::vector<twin::Volume> expected = test::readGeometryVolume(drawn, inputs),
-                                      actual = test::readGeometryVolume(counted, inputs);
+      const std::vector<reference::Volume> expected = test::readGeometryVolume(drawn, inputs),
+                                           actual = test::readGeometryVolume(counted, inputs);
       double largest = 0.0;
       for (std::size_t k = 0; k < expected.size(); ++k) {
         // Steps for all texels at a cosine of 1/20 in one cell: half a step a surfel, some ten of them a cell.
         EXPECT_LT(test::relativeError(expected[k], actual[k]), fill == LpvFill::fixed ? 2e-5 : 1e-6)
             << k << " " << nameOf(fill);
-        for (const twin::Sh& cell : actual[k].cells) largest = std::max(largest, cell.c0);
+        for (const reference::Sh& cell : actual[k].cells) largest = std::max(largest, cell.c0);
       }
       EXPECT_GT(largest, 0.01);
       const std::vector<VolumeRgb> a = test::readVolume(drawn.result(), inputs),
@@ -285,13 +285,13 @@ TEST_F(LpvWays, CountedSurfelsNeverOverflow) {
         cascades[k].cellSize = k == 0 ? 0.5 : 1.0;
       }
       const LpvInputs inputs{{textures.outputs()}, cascades, kIrradiance};
-      const std::vector<twin::Volume> volumes = test::readGeometryVolume(run(s, inputs), inputs);
+      const std::vector<reference::Volume> volumes = test::readGeometryVolume(run(s, inputs), inputs);
       for (std::size_t k = 0; k < volumes.size(); ++k) {
         double band0 = 0.0, band1 = 0.0;
-        for (const twin::Sh& cell : volumes[k].cells) band0 += cell.c0, band1 += cell.c1.z;
+        for (const reference::Sh& cell : volumes[k].cells) band0 += cell.c0, band1 += cell.c1.z;
         const double s2 = inputs.cascades[k].cellSize * inputs.cascades[k].cellSize, total = count * area * 20.0 / s2;
-        EXPECT_NEAR(band0 / (total * twin::kLobeBand0), 1.0, 1e-4) << count << " " << k;
-        EXPECT_NEAR(band1 / (total * -twin::kLobeBand1), 1.0, 1e-4) << count << " " << k;
+        EXPECT_NEAR(band0 / (total * reference::kLobeBand0), 1.0, 1e-4) << count << " " << k;
+        EXPECT_NEAR(band1 / (total * -reference::kLobeBand1), 1.0, 1e-4) << count << " " << k;
       }
     }
 }
@@ -360,12 +360,12 @@ TEST_F(LpvWays, FixedPointNeverOverflows) {
             // Without units each counts E albedo in place of E albedo A / s^2.
             const double s2 = std::pow(inputs.cascades[k].cellSize, 2.0);
             const double each = static_cast<double>(kIrradiance) * (fluxUnits ? s2 : area);
-            EXPECT_NEAR(twin::totalFlux(injected[k]).x / (each * count), 1.0, 1e-4)
+            EXPECT_NEAR(reference::totalFlux(injected[k]).x / (each * count), 1.0, 1e-4)
                 << count << " " << k << fluxUnits << scale;
             double largest = 0.0;
-            for (const twin::Sh& cell : injected[k][2].cells)
+            for (const reference::Sh& cell : injected[k][2].cells)
               largest = std::abs(cell.c1.z) > std::abs(largest) ? cell.c1.z : largest;
-            EXPECT_NEAR(largest / (each * count * way * twin::kLobeBand1 / kPi), 1.0, 1e-4)
+            EXPECT_NEAR(largest / (each * count * way * reference::kLobeBand1 / kPi), 1.0, 1e-4)
                 << count << " " << k << fluxUnits << scale;
           }
         }
@@ -461,7 +461,7 @@ TEST_F(LpvHalfStall, TenThousandEqualLightsInACellAddUp) {
         const RsmTexel light{{0.2f, 0.2f, 0.2f, 1.0f}, {0, 0, 1, 1}, glm::vec3(flux)};
         const RsmTextures textures(std::vector<RsmTexel>(10000, light), static_cast<double>(flux));
         const LpvInputs inputs{{textures.outputs()}, place(s), 1.0f};
-        const double total = twin::totalFlux(test::readVolume(run(s, inputs).injected(), inputs)[0]).x;
+        const double total = reference::totalFlux(test::readVolume(run(s, inputs).injected(), inputs)[0]).x;
         // Equal terms drift in a 32-bit sum by up to 2^-25 each, 3e-4 here; measured 1.3e-4 at the least flux.
         EXPECT_NEAR(total / (10000.0 * static_cast<double>(flux)), 1.0,
                     fill != LpvFill::fixed && flux < 1e-5f ? 2e-4 : 1e-4)

@@ -1,8 +1,8 @@
-// GLSL functions for participating media against their double-precision twins, and their samples against their
-// densities.
+// GLSL functions for participating media against their double-precision reference implementations, and their samples
+// against their densities.
 #include "pathtracer/media.hpp"
 #include "support/gl_fixture.hpp"
-#include "support/media_twin.hpp"
+#include "support/media_reference.hpp"
 
 #include "gl/pass.hpp"
 
@@ -98,13 +98,13 @@ TEST_F(MediaFunctions, HenyeyGreensteinForEveryG) {
     for (std::size_t i = 0; i < probes.size(); ++i) {
       const double xi = (probes[i].k.x >> 8) * 0x1p-24;
       const glm::dvec3 w(glm::normalize(glm::dvec3(glm::vec3(probes[i].a)))), to(glm::vec3(answers[i].a));
-      const double cosine = twin::henyeyGreensteinCosine(g, xi), back = 1.0 - cosine;
+      const double cosine = reference::henyeyGreensteinCosine(g, xi), back = 1.0 - cosine;
       // A float direction holds its angle to 1e-7 or so: what 1 - cos = angle^2 / 2 can keep of that.
       worstAngle = std::max(worstAngle, std::abs(std::sqrt(2.0 * answers[i].b.x) - std::sqrt(2.0 * back)));
       // The density against the direction that was given, since near |g| = 1 it changes manifold within that angle.
       const double given = g >= 0.0 ? 1.0 - 0.5 * glm::dot(to - w, to - w) : 0.5 * glm::dot(to + w, to + w) - 1.0;
       if (std::abs(g) < 0.995)
-        worstPdf = std::max(worstPdf, relative(answers[i].a.w, twin::henyeyGreensteinPdf(g, given)));
+        worstPdf = std::max(worstPdf, relative(answers[i].a.w, reference::henyeyGreensteinPdf(g, given)));
       // 1 - cos as the GPU has it: its spread is that of cos, and near g = 1 it keeps the digits that cos has lost.
       sum += answers[i].b.x;
       squares += static_cast<double>(answers[i].b.x) * static_cast<double>(answers[i].b.x);
@@ -129,7 +129,7 @@ TEST_F(MediaFunctions, PhaseFunctionsIntegrateToOneAndHaveTheirMeanCosine) {
     const int n = 20000;
     std::vector<MediaProbe> probes;
     for (int i = 0; i < n; ++i) {
-      const double c = twin::henyeyGreensteinCosine(g, (i + 0.5) / n), s = std::sqrt((1.0 - c) * (1.0 + c));
+      const double c = reference::henyeyGreensteinCosine(g, (i + 0.5) / n), s = std::sqrt((1.0 - c) * (1.0 + c));
       MediaProbe p;
       p.a = glm::vec4(glm::vec3(w), static_cast<float>(1.0 - g));
       p.b = glm::vec4(static_cast<float>(s), 0.0f, static_cast<float>(c), static_cast<float>(1.0 + g));
@@ -138,12 +138,12 @@ TEST_F(MediaFunctions, PhaseFunctionsIntegrateToOneAndHaveTheirMeanCosine) {
     const auto answers = probe(phasePdf, probes);
     double one = 0.0, mean = 0.0, mirrored = 0.0, rayleighSum = 0.0;
     for (int i = 0; i < n; ++i) {
-      const double c = probes[static_cast<std::size_t>(i)].b.z, perXi = 1.0 / twin::henyeyGreensteinPdf(g, c);
+      const double c = probes[static_cast<std::size_t>(i)].b.z, perXi = 1.0 / reference::henyeyGreensteinPdf(g, c);
       one += answers[static_cast<std::size_t>(i)].a.x * perXi / n;
       mean += answers[static_cast<std::size_t>(i)].a.x * perXi * c / n;
       // The third channel has the opposite g: p(-g, c) = p(g, -c).
       mirrored =
-          std::max(mirrored, relative(answers[static_cast<std::size_t>(i)].a.z, twin::henyeyGreensteinPdf(-g, c)));
+          std::max(mirrored, relative(answers[static_cast<std::size_t>(i)].a.z, reference::henyeyGreensteinPdf(-g, c)));
       rayleighSum += answers[static_cast<std::size_t>(i)].a.w * perXi / n;
     }
     EXPECT_NEAR(one, 1.0, 2e-5) << g;
@@ -191,7 +191,7 @@ TEST_F(MediaFunctions, SamplesFollowTheirDensities) {
     for (const Answer& answer : answers) {
       const glm::dvec3 to(glm::vec3(answer.a));
       const double cosine = g >= 0.0 ? 1.0 - 0.5 * glm::dot(to - w, to - w) : 0.5 * glm::dot(to + w, to + w) - 1.0;
-      samples.emplace_back(isRayleigh ? twin::rayleighCdf(cosine) : twin::henyeyGreensteinCdf(g, cosine),
+      samples.emplace_back(isRayleigh ? reference::rayleighCdf(cosine) : reference::henyeyGreensteinCdf(g, cosine),
                            std::atan2(glm::dot(to, b), glm::dot(to, t)) / (2.0 * M_PI) + 0.5);
     }
     const double p = chiSquareP(samples);
@@ -212,7 +212,7 @@ TEST_F(MediaFunctions, FresnelIsExactAndItsDeviationsAreTheTabledOnes) {
   const auto answers = probe(fresnel, probes);
   for (std::size_t i = 0; i < probes.size(); ++i) {
     const double c = probes[i].a.x, eta = probes[i].a.y;
-    ASSERT_NEAR(answers[i].a.x, twin::fresnel(c, eta), 3e-6) << c << " " << eta;
+    ASSERT_NEAR(answers[i].a.x, reference::fresnel(c, eta), 3e-6) << c << " " << eta;
   }
   // The angles inside glass of n = 1.5, and its average over the hemisphere outside.
   const double degrees[] = {0, 20, 30, 40, 41, 41.8, 42, 60, 80},
@@ -270,15 +270,16 @@ TEST_F(MediaFunctions, SpectralWeightsAreTheTwinsAndConserveTheSumOfChannels) {
   for (std::size_t i = 0; i < probes.size(); ++i) {
     const Medium& medium = media[probes[i].k.x];
     const glm::dvec3 beta(glm::vec3(probes[i].a)), q = beta / (beta.x + beta.y + beta.z);
-    const glm::dvec3 scatter = twin::scatteringWeight(medium, q, probes[i].a.w),
-                     pass = twin::passageWeight(medium, q, probes[i].a.w);
+    const glm::dvec3 scatter = reference::scatteringWeight(medium, q, probes[i].a.w),
+                     pass = reference::passageWeight(medium, q, probes[i].a.w);
     glm::dvec3 after(0.0), passed(0.0);
     for (int c = 0; c < 3; ++c) {
       ASSERT_TRUE(std::isfinite(answers[i].a[c]) && std::isfinite(answers[i].b[c])) << i;
       after[c] = beta[c] * static_cast<double>(answers[i].a[c]);
       passed[c] = beta[c] * static_cast<double>(answers[i].b[c]);
       if (q[c] == 0.0) continue;
-      // exp of an argument in the thousands keeps some digits fewer; what has underflowed in the twin has no say.
+      // exp of an argument in the thousands keeps some digits fewer; what has underflowed in the reference
+      // implementation has no say.
       if (std::isfinite(scatter[c]) && q[c] * scatter[c] > 1e-12) {
         ASSERT_LT(relative(answers[i].a[c], scatter[c]), 3e-4) << i << " channel " << c;
       }
@@ -327,7 +328,7 @@ TEST_F(MediaFunctions, DensityIsInterpolatedAndBoundedBlockByBlock) {
   int crossed = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const glm::dvec3 o(glm::vec3(points[i].a)), d(glm::vec3(rays[i].b));
-    ASSERT_NEAR(values[i].a.x, twin::density(*medium.grid, o), 2e-4) << i;
+    ASSERT_NEAR(values[i].a.x, reference::density(*medium.grid, o), 2e-4) << i;
     // The length inside the box, by the slabs' method in double.
     double near = 0.0, far = 3.0;
     for (int k = 0; k < 3; ++k) {
@@ -341,7 +342,7 @@ TEST_F(MediaFunctions, DensityIsInterpolatedAndBoundedBlockByBlock) {
     }
     ASSERT_NEAR(marches[i].a.x, std::max(far - near, 0.0), 1e-5) << i;
     ASSERT_GT(marches[i].a.y, -1e-4) << i << ": a block's bound lies below the density in it";
-    const double depth = twin::densityIntegral(*medium.grid, o, d, 3.0, 3000);
+    const double depth = reference::densityIntegral(*medium.grid, o, d, 3.0, 3000);
     ASSERT_NEAR(marches[i].a.w, depth, 0.01 + 0.01 * depth) << i;
     crossed += marches[i].a.z > 1.0f;
   }
@@ -379,7 +380,7 @@ TEST_F(MediaFunctions, TheDensitysIntegralIsExactAndEndsByItself) {
       near = std::max(near, std::min(a, b));
       far = std::min(far, std::max(a, b));
     }
-    const double exact = far > near ? twin::densityIntegral(*medium.grid, o + near * d, d, far - near, 4000) : 0.0;
+    const double exact = far > near ? reference::densityIntegral(*medium.grid, o + near * d, d, far - near, 4000) : 0.0;
     worst = std::max(worst, std::abs(answers[i].a.x - exact));
     most = std::max(most, static_cast<double>(answers[i].a.y));
     deepest = std::max(deepest, exact);

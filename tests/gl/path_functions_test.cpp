@@ -1,5 +1,5 @@
-// The path tracer's GLSL functions against twins in double precision, and the distributions of what they draw.
-// Statistical tests: seeds are fixed; chi-square at significance 1e-4.
+// The path tracer's GLSL functions against reference implementations in double precision, and the distributions of what
+// they draw. Statistical tests: seeds are fixed; chi-square at significance 1e-4.
 #include "support/gl_fixture.hpp"
 
 #include "base/angles.hpp"
@@ -18,7 +18,7 @@ namespace lucerna::test {
 namespace {
 
 // ------------------------------------------------------------------------------------------------------------- the
-// twins
+// reference implementations
 
 std::array<std::uint32_t, 4> pcg4d(std::array<std::uint32_t, 4> v) {  // [JarzynskiOlano2020]
   for (auto& x : v) x = x * 1664525u + 1013904223u;
@@ -83,7 +83,7 @@ struct Ggx {
   /// [Walter2007 eq 21, 17] for i below; radiance over n^2; eta: index of o's side over the other's.
   double refract(const glm::dvec3& o, const glm::dvec3& i, double eta, double& pdf) const {
     const double no = eta, ni = 1.0;
-    const glm::dvec3 facet = -glm::normalize(ni * i + no * o), h = facet.z < 0.0 ? -facet : facet;
+    const glm::dvec3 bsdf = -glm::normalize(ni * i + no * o), h = bsdf.z < 0.0 ? -bsdf : bsdf;
     const double oh = glm::dot(o, h), ih = glm::dot(i, h);
     pdf = 0.0;
     if (oh <= 0.0 || ih >= 0.0) return 0.0;
@@ -173,7 +173,7 @@ TEST_F(PathFunctionsTest, FirstPairsAreEvenlySpread) {
   }
 }
 
-TEST_F(PathFunctionsTest, MicrofacetsAndFresnelAreTheTwins) {
+TEST_F(PathFunctionsTest, MicrofacetsAndFresnelAreTheReferences) {
   std::vector<Pair> inputs;
   for (int i = 0; i < 4096; ++i) {
     const double alpha = std::pow(10.0, -2.0 + 2.0 * uniform()), eta = i % 2 ? 1.0 / 1.5 : 1.33;
@@ -206,7 +206,8 @@ TEST_F(PathFunctionsTest, MicrofacetsAndFresnelAreTheTwins) {
   }
 }
 
-// Directions drawn, in 12 x 24 cells of cosine and azimuth, against the twin's density integrated over each cell.
+// Directions drawn, in 12 x 24 cells of cosine and azimuth, against the reference implementation's density integrated
+// over each cell.
 TEST_F(PathFunctionsTest, DrawnDirectionsHaveTheirDensity) {
   constexpr int kRows = 12, kColumns = 24, kSamples = 1 << 17, kFine = 12;
   struct Case {

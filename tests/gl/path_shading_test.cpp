@@ -2,7 +2,7 @@
 // picks, lamps behind a dense density grid, channels that differ. Statistical tests: seeds are fixed; 4 standard
 // errors.
 #include "base/angles.hpp"
-#include "support/form_factor_twin.hpp"
+#include "support/form_factor_reference.hpp"
 #include "support/media_scenes.hpp"
 #include "support/path_scenes.hpp"
 #include "support/pixel_rays.hpp"
@@ -223,7 +223,7 @@ TEST_F(PathShading, AnEnvironmentPictureAndLampsOfEveryKindShareThePicks) {
       builder.materialAt(lamp).emission = {3.0f, 2.0f, 1.0f};
       const std::array<glm::dvec3, 3> corners{{{-1.0, 1.5, -1.5}, {1.2, 1.0, -1.0}, {0.1, 2.2, -2.0}}};
       builder.triangle(corners[0], corners[1], corners[2], lamp);
-      const double share = twin::pointToPolygon({0, 0, 0}, {0, 1, 0}, corners);
+      const double share = reference::pointToPolygon({0, 0, 0}, {0, 1, 0}, corners);
       // It shines both ways, and hides its share of the sky.
       irradiance += kPi * share * (glm::dvec3(3.0, 2.0, 1.0) - glm::dvec3(radiance));
     }
@@ -245,7 +245,7 @@ TEST_F(PathShading, EmissiveTrianglesThatSharePicksWithALampAreWeighedOnce) {
   const std::array<glm::dvec3, 3> corners{{{-3.0, 1.0, 2.0}, {3.0, 1.0, 2.0}, {0.0, 1.0, -4.0}}};
   builder.triangle(corners[0], corners[1], corners[2], lamp);
   builder.scene().points.push_back({{0, 0.5, 0}, glm::vec3(2.0f)});
-  const double expected = 0.6f / kPi * (kPi * twin::pointToPolygon({0, 0, 0}, {0, 1, 0}, corners) + 2.0 / 0.25);
+  const double expected = 0.6f / kPi * (kPi * reference::pointToPolygon({0, 0, 0}, {0, 1, 0}, corners) + 2.0 / 0.25);
   PathTracer::Settings settings = sized(16);
   settings.transport = Transport::direct;
   const PathTracer::Statistics result =

@@ -154,13 +154,13 @@ TEST_F(PathWalkTest, TheKernelForGpusTellsTheSameLightsOfAPixel) {
   const Scene scene = smokyRoom();
   PathTracer::Settings settings;
   settings.size = {24, 24};
-  settings.askedPixel = glm::ivec2(12, 12);
-  std::vector<std::vector<PathTracer::AskedLight>> told;
+  settings.inspectedPixel = glm::ivec2(12, 12);
+  std::vector<std::vector<PathTracer::InspectedLight>> told;
   for (const bool shared : {false, true}) {
     settings.rays.sharedStack = shared;
     PathTracer tracer(context(), library(), scene, settings);
     tracer.record(16);
-    told.push_back(tracer.takeAsked());
+    told.push_back(tracer.takeInspected());
   }
   ASSERT_EQ(told[0].size(), told[1].size());
   EXPECT_GT(told[0].size(), 8u);

@@ -7,7 +7,7 @@
 #include "radiosity/original/scene_solution.hpp"
 #include "radiosity/original/solver.hpp"
 #include "support/gl_fixture.hpp"
-#include "support/rad_twin.hpp"
+#include "support/rad_reference.hpp"
 #include "support/radiosity_scenes.hpp"
 #include "support/temp_folder.hpp"
 

@@ -2,7 +2,7 @@
 // against many rays in double where something is; and the parts of the picture add up.
 #include "radiosity/radiosity_view.hpp"
 #include "render/renderer.hpp"
-#include "support/form_factor_twin.hpp"
+#include "support/form_factor_reference.hpp"
 #include "support/gl_fixture.hpp"
 #include "support/radiosity_scenes.hpp"
 #include "support/ray_caster.hpp"
@@ -75,7 +75,7 @@ TEST_F(RadiosityDirect, ALampsShadowIsThatOfManyRays) {
       if (!hit || hit->triangle > 1) continue;  // the floor
       const glm::dvec3 p = kAbove.position + hit->distance * d;
       if (std::max(std::abs(p.x), std::abs(p.z)) > 1.98) continue;
-      const double open = 3.0 * twin::pointToPolygon(p, {0, 1, 0}, lamp);
+      const double open = 3.0 * reference::pointToPolygon(p, {0, 1, 0}, lamp);
       double seen = 0.0, all = 0.0;
       constexpr int kGrid = 24;
       for (int i = 0; i < kGrid; ++i)

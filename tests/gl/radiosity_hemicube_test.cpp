@@ -1,7 +1,7 @@
 // Hemicubes on the GPU against closed forms and against rays cast one by one.
 #include "radiosity/form_factor_matrix.hpp"
 #include "radiosity/hemicubes.hpp"
-#include "support/form_factor_twin.hpp"
+#include "support/form_factor_reference.hpp"
 #include "support/gl_fixture.hpp"
 #include "support/radiosity_scenes.hpp"
 #include "support/ray_caster.hpp"
@@ -137,7 +137,7 @@ TEST_F(Hemicube, AntialiasingHalvesTheErrorAndDoubledResolutionDoesMore) {
     const std::vector<glm::dvec3> square{{-h, 1, -h}, {h, 1, -h}, {h, 1, h}, {-h, 1, h}};
     double squares = 0.0;
     for (std::size_t i = 0; i < kPlaces; ++i) {
-      const double exact = std::abs(twin::pointToPolygon(c.mesh.patches[i].centroid, {0, 1, 0}, square));
+      const double exact = std::abs(reference::pointToPolygon(c.mesh.patches[i].centroid, {0, 1, 0}, square));
       const double off = c.sum(i, kPlaces, kPlaces + 1) / exact - 1.0;
       squares += off * off / kPlaces;
     }
@@ -191,11 +191,11 @@ TEST_F(Hemicube, NothingIsLostInAClosedRoomAndNoPixelFallsBetweenPatches) {
   Scene open = cubeRoom(5, 0.5, 1.0);
   open.meshes.resize(open.meshes.size() - 25);
   const Computed c = compute(open, pixelsAlone(64));
-  EXPECT_NEAR(
-      c.fronts[24],
-      1.0 - twin::pointToPolygon(c.mesh.patches[24].centroid, {0, 1, 0},
-                                 std::vector<glm::dvec3>{{.5, -.5, -.5}, {.5, -.5, .5}, {.5, .5, .5}, {.5, .5, -.5}}),
-      0.003);
+  EXPECT_NEAR(c.fronts[24],
+              1.0 - reference::pointToPolygon(
+                        c.mesh.patches[24].centroid, {0, 1, 0},
+                        std::vector<glm::dvec3>{{.5, -.5, -.5}, {.5, -.5, .5}, {.5, .5, .5}, {.5, .5, -.5}}),
+              0.003);
 }
 
 TEST_F(Hemicube, RowsDoNotDependOnHowTheyAreCutIntoSubmissions) {

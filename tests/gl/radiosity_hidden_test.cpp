@@ -3,7 +3,7 @@
 #include "radiosity/hidden_parts.hpp"
 #include "radiosity/solution.hpp"
 #include "scene/triangle_parts.hpp"
-#include "support/form_factor_twin.hpp"
+#include "support/form_factor_reference.hpp"
 #include "support/gl_fixture.hpp"
 #include "support/radiosity_scenes.hpp"
 
@@ -138,8 +138,8 @@ TEST_F(HiddenParts, DoNotReceive) {
       const auto c = mesh.corners(floor);
       for (const glm::dvec2& w : partCentroids(8)) {  // as finely as near receivers are divided
         if (floor.hidden >> partAt(kPatchParts, w) & 1) continue;
-        expected +=
-            std::abs(twin::pointToPolygon(c[0] + w.x * (c[1] - c[0]) + w.y * (c[2] - c[0]), floor.faceNormal, side));
+        expected += std::abs(
+            reference::pointToPolygon(c[0] + w.x * (c[1] - c[0]) + w.y * (c[2] - c[0]), floor.faceNormal, side));
         open += 1.0;
       }
       EXPECT_NEAR(received / (expected / open), 1.0, 1e-3) << nameOf(way);

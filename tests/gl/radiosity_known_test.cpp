@@ -4,7 +4,7 @@
 #include "radiosity/hemicubes.hpp"
 #include "radiosity/solution.hpp"
 #include "scene/triangle_parts.hpp"
-#include "support/form_factor_twin.hpp"
+#include "support/form_factor_reference.hpp"
 #include "support/gl_fixture.hpp"
 #include "support/long_tests.hpp"
 #include "support/radiosity_scenes.hpp"
@@ -112,8 +112,9 @@ TEST_F(RadiosityKnownOnGl, ThroughADoorAsMuchGoesOneWayAsTheOther) {
     ASSERT_LE(r.fronts[i], 1.0 + 2.0 * 4.0 / (std::numbers::pi * 128.0 * 128.0)) << i;
     const Patch& patch = r.mesh.patches[i];
     const double across = r.sum(i, [&](std::size_t j) { return (j < half) != (i < half); });
-    const double exact =
-        std::abs(patch.centroid.x - 0.5) < 1e-6 ? 0.0 : twin::pointToPolygon(patch.centroid, patch.faceNormal, door);
+    const double exact = std::abs(patch.centroid.x - 0.5) < 1e-6
+                             ? 0.0
+                             : reference::pointToPolygon(patch.centroid, patch.faceNormal, door);
     squares += (across - exact) * (across - exact);
     mean += exact;
   }
@@ -453,9 +454,9 @@ TEST_F(RadiosityKnownOnGl, ALitCapIsSeenWholeAtAnyTessellation) {
             if (!lit[j] || static_cast<int>(j) == i) continue;
             const auto source = mesh.corners(mesh.patches[j]);
             for (const glm::dvec2& w : parts)
-              expected +=
-                  twin::pointToPolygon(c[0] + w.x * (c[1] - c[0]) + w.y * (c[2] - c[0]), patch.faceNormal, source) /
-                  static_cast<double>(parts.size());
+              expected += reference::pointToPolygon(c[0] + w.x * (c[1] - c[0]) + w.y * (c[2] - c[0]), patch.faceNormal,
+                                                    source) /
+                          static_cast<double>(parts.size());
           }
         }
         ASSERT_GT(receivers, 1) << level << ' ' << low;
@@ -511,7 +512,7 @@ TEST_F(RadiosityKnownOnGl, ABallWithALitCapIsThatOfClosedForms) {
         const Patch& patch = s.mesh.patches[i];
         const double distance = glm::length(patch.centroid - s.mesh.patches[j].centroid);
         const auto factorAt = [&](const glm::dvec3& p) {
-          return twin::pointToPolygon(p, patch.faceNormal, corners[j]);
+          return reference::pointToPolygon(p, patch.faceNormal, corners[j]);
         };
         flux[i * n + j] = flux[j * n + i] =
             patch.area * meanOver(corners[i], factorAt, distance > 6.0 * std::sqrt(patch.area) ? 0 : 12);
@@ -570,7 +571,7 @@ TEST_F(RadiosityKnownOnGl, ADividedSquareLosesNothing) {
       measured += std::accumulate(rows.factors.begin(), rows.factors.end(), 0.0);
     }
     for (int i = 0; i < kRows; ++i)
-      expected += twin::pointToPolygon(mesh.patches[static_cast<std::size_t>(i)].centroid, {0, 0, 1}, square);
+      expected += reference::pointToPolygon(mesh.patches[static_cast<std::size_t>(i)].centroid, {0, 0, 1}, square);
     EXPECT_NEAR(measured / expected, 1.0, 5e-4) << n << " x " << n;
   }
 }

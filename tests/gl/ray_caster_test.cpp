@@ -20,12 +20,12 @@ using namespace test;
 struct RayCasterOnGl : SharedProgramsTest {};
 
 /// The first hit by trying every triangle, in double (T. Moller, B. Trumbore, 1997).
-struct Twin {
+struct Reference {
   double t = 1e300;
   std::uint32_t triangle = kNoHit;
 };
-Twin bruteForce(const Scene& scene, const glm::dvec3& shift, const GlRay& ray) {
-  Twin best;
+Reference bruteForce(const Scene& scene, const glm::dvec3& shift, const GlRay& ray) {
+  Reference best;
   const glm::dvec3 o(ray.origin), d(ray.direction);
   for (std::size_t k = 0; k < scene.triangleCount(); ++k) {
     const auto corner = [&](std::size_t i) {
@@ -72,7 +72,7 @@ std::vector<GlRay> randomRays(std::size_t count, const glm::dvec3& centre, const
 struct Meeting {
   double t, inside, cosine;
 };
-Meeting meet(const Scene& scene, const glm::dvec3& shift, const GlRay& ray, std::uint32_t triangle) {
+Meeting handleHit(const Scene& scene, const glm::dvec3& shift, const GlRay& ray, std::uint32_t triangle) {
   const glm::dvec3 d(ray.direction), unit = glm::normalize(d);
   const auto corner = [&](std::size_t k) {
     return glm::dvec3(scene.vertices[scene.indices[3 * triangle + k]].position) - shift - glm::dvec3(ray.origin);
@@ -109,7 +109,7 @@ Verdict compare(const Scene& scene, const RayScene& rayScene, const std::vector<
     const double length = glm::length(glm::dvec3(rays[i].direction));
     const double tUs = us ? static_cast<double>(ours[i].t) * length : 1e300,
                  tThem = them ? static_cast<double>(others[i].t) * length : 1e300;
-    const auto m = us ? meet(scene, rayScene.origin(), rays[i], ours[i].triangle) : Meeting{};
+    const auto m = us ? handleHit(scene, rayScene.origin(), rays[i], ours[i].triangle) : Meeting{};
     // Corners and origin are exact; what is computed from them is off by some units in the last place of the largest of
     // them.
     const double rounding = 16.0 * 0x1p-24 * (magnitude + static_cast<double>(glm::length(rays[i].origin)));
@@ -119,7 +119,8 @@ Verdict compare(const Scene& scene, const RayScene& rayScene, const std::vector<
       continue;
     }
     if (us && them && std::abs(tUs - tThem) <= 1e-5 * tThem + rounding / std::max(m.cosine, 1e-9)) continue;
-    const auto nearest = meet(scene, rayScene.origin(), rays[i], tUs < tThem ? ours[i].triangle : others[i].triangle);
+    const auto nearest =
+        handleHit(scene, rayScene.origin(), rays[i], tUs < tThem ? ours[i].triangle : others[i].triangle);
     if (nearest.inside <= rounding || std::abs(nearest.t) * length <= rounding) ++verdict.atEdges;
     else ++(tUs < tThem ? verdict.theirs : verdict.wrong);
   }
@@ -135,12 +136,12 @@ TEST_F(RayCasterOnGl, MeetsWhatBruteForceMeets) {
       const RayScene rayScene(scene, capabilities());
       const std::vector<GlRay> rays = randomRays(4096, centre - rayScene.origin(), glm::dvec3(1.5 * scale), 2);
       const std::vector<GlHit> hits = trace(library(), rayScene, rays);
-      std::vector<GlHit> twins;
+      std::vector<GlHit> expectedOnes;
       for (const GlRay& ray : rays) {
-        const Twin twin = bruteForce(scene, rayScene.origin(), ray);
-        twins.push_back({static_cast<float>(twin.t), twin.triangle, glm::vec2(0.0f)});
+        const Reference expected = bruteForce(scene, rayScene.origin(), ray);
+        expectedOnes.push_back({static_cast<float>(expected.t), expected.triangle, glm::vec2(0.0f)});
       }
-      const Verdict v = compare(scene, rayScene, rays, hits, twins);
+      const Verdict v = compare(scene, rayScene, rays, hits, expectedOnes);
       EXPECT_GT(v.met, 1000u) << scale << ", " << far;
       EXPECT_EQ(v.wrong + v.theirs, 0u) << scale << ", " << far;
       EXPECT_LE(v.atEdges, 2u) << scale << ", " << far;
@@ -196,8 +197,8 @@ TEST_F(RayCasterOnGl, TracesNothingOneAndTheDegenerate) {
   int met = 0;
   const std::vector<GlHit> hits = trace(library(), one, rays);
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    const Twin twin = bruteForce(builder.scene(), one.origin(), rays[i]);
-    EXPECT_EQ(hits[i].triangle, twin.triangle);
+    const Reference expected = bruteForce(builder.scene(), one.origin(), rays[i]);
+    EXPECT_EQ(hits[i].triangle, expected.triangle);
     met += hits[i].triangle == 1u;
   }
   EXPECT_GT(met, 50);
@@ -250,18 +251,19 @@ TEST_F(RayCasterOnGl, MeetsTheGiantAndTheTinyTheSliverAndTheDuplicate) {
   for (int i = 0; i < 1000; ++i)
     rays.push_back({glm::vec3(0.001f * static_cast<float>(i) - 0.5f, 0.25f + 2.5e-7f, 2), 0.0f, glm::vec3(0, 0, -1)});
   const std::vector<GlHit> hits = trace(library(), rayScene, rays);
-  std::vector<GlHit> twins;
+  std::vector<GlHit> expectedOnes;
   for (const GlRay& ray : rays) {
-    const Twin twin = bruteForce(scene, rayScene.origin(), ray);
-    twins.push_back({static_cast<float>(twin.t), twin.triangle, glm::vec2(0.0f)});
+    const Reference expected = bruteForce(scene, rayScene.origin(), ray);
+    expectedOnes.push_back({static_cast<float>(expected.t), expected.triangle, glm::vec2(0.0f)});
   }
   std::size_t wrong = 0, tiny = 0, slivers = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     tiny += hits[i].triangle >= 1 && hits[i].triangle < 129;
     slivers += hits[i].triangle >= 129 && hits[i].triangle != kNoHit;
-    const bool same = hits[i].triangle == twins[i].triangle || std::abs(hits[i].t - twins[i].t) <= 1e-5f * twins[i].t;
-    const std::uint32_t nearer = hits[i].t < twins[i].t ? hits[i].triangle : twins[i].triangle;
-    wrong += !same && std::abs(meet(scene, rayScene.origin(), rays[i], nearer).inside) > 3e-7;
+    const bool same = hits[i].triangle == expectedOnes[i].triangle ||
+                      std::abs(hits[i].t - expectedOnes[i].t) <= 1e-5f * expectedOnes[i].t;
+    const std::uint32_t nearer = hits[i].t < expectedOnes[i].t ? hits[i].triangle : expectedOnes[i].triangle;
+    wrong += !same && std::abs(handleHit(scene, rayScene.origin(), rays[i], nearer).inside) > 3e-7;
   }
   EXPECT_EQ(wrong, 0u);
   EXPECT_GT(tiny, 250u);
@@ -342,12 +344,12 @@ TEST_F(RayCasterOnGl, OutlivesFansAndNestedBoxes) {
     for (GlRay& ray : rays)
       if (&ray - rays.data() < 100) ray.direction = -ray.origin * 2.0f;  // through the middle
     const std::vector<GlHit> hits = trace(library(), rayScene, rays);
-    std::vector<GlHit> twins;
+    std::vector<GlHit> expectedOnes;
     for (const GlRay& ray : rays) {
-      const Twin twin = bruteForce(*scene, rayScene.origin(), ray);
-      twins.push_back({static_cast<float>(twin.t), twin.triangle, glm::vec2(0.0f)});
+      const Reference expected = bruteForce(*scene, rayScene.origin(), ray);
+      expectedOnes.push_back({static_cast<float>(expected.t), expected.triangle, glm::vec2(0.0f)});
     }
-    const Verdict v = compare(*scene, rayScene, rays, hits, twins);
+    const Verdict v = compare(*scene, rayScene, rays, hits, expectedOnes);
     EXPECT_EQ(v.wrong, 0u);
     EXPECT_GT(v.met, 30u);
   }

@@ -1,4 +1,5 @@
-// The gather on the GPU: against its CPU twin point by point, and through the renderer on scenes whose answer is known.
+// The gather on the GPU: against its CPU reference implementation point by point, and through the renderer on scenes
+// whose answer is known.
 #include "render/renderer.hpp"
 #include "rsm/reflective_shadow_map.hpp"
 #include "rsm/rsm_frame.hpp"
@@ -15,9 +16,9 @@
 namespace lucerna {
 namespace {
 
+using reference::NearField;
+using reference::RsmMap;
 using test::SurfacePoint;
-using twin::NearField;
-using twin::RsmMap;
 
 double luminance(const glm::dvec3& c) { return (c.x + c.y + c.z) / 3.0; }
 
@@ -71,7 +72,7 @@ class RsmGatherOnGl : public test::SharedProgramsTest {
   }
 };
 
-TEST_F(RsmGatherOnGl, EqualsTheTwin) {
+TEST_F(RsmGatherOnGl, EqualsTheReference) {
   constexpr std::pair<RsmGather::Near, NearField> kNear[] = {{RsmGather::Near::none, NearField::none},
                                                              {RsmGather::Near::clamp, NearField::clamp},
                                                              {RsmGather::Near::disc, NearField::disc},
@@ -89,13 +90,13 @@ TEST_F(RsmGatherOnGl, EqualsTheTwin) {
         settings.clampTexels = 2.0f;
         const auto pattern = RsmGather::pattern(400, weight, {0.3, 0.1});
         const auto actual = probe(map, settings, pattern, points, rotation);
-        const twin::GatherOptions options{static_cast<double>(settings.radius), onCpu,
-                                          2.0 * std::sqrt(map.texelArea())};
+        const reference::GatherOptions options{static_cast<double>(settings.radius), onCpu,
+                                               2.0 * std::sqrt(map.texelArea())};
         int compared = 0;
         double worst = 0.0;
         for (std::size_t i = 0; i < points.size(); ++i) {
-          const auto expected =
-              twin::gather(map, pattern, points[i].position, points[i].normal, static_cast<double>(rotation), options);
+          const auto expected = reference::gather(map, pattern, points[i].position, points[i].normal,
+                                                  static_cast<double>(rotation), options);
           if (expected.boundaryDistance < 2e-5)
             continue;  // a sample on a texel's edge: rounding decides which it takes
           ++compared;

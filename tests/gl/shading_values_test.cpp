@@ -1,5 +1,5 @@
-// Forward shading pixel by pixel against double-precision twins: highlights, the shape of shadow filters, the display
-// curves.
+// Forward shading pixel by pixel against double-precision reference implementations: highlights, the shape of shadow
+// filters, the display curves.
 #include "base/angles.hpp"
 #include "radiosity/radiosity_view.hpp"
 #include "support/gl_fixture.hpp"

@@ -2,7 +2,7 @@
 // factors that a horizon cuts.
 #include "lpv/settings.hpp"
 #include "radiosity/radiosity_view.hpp"
-#include "support/form_factor_twin.hpp"
+#include "support/form_factor_reference.hpp"
 #include "support/gl_fixture.hpp"
 #include "support/largest_difference.hpp"
 #include "support/pixel_rays.hpp"
@@ -70,8 +70,7 @@ TEST_F(SidesAndChannels, TurningEveryFaceAroundChangesNoPicture) {
     const Image back = render(turned, openBoxCamera(), settings(technique));
     EXPECT_GT(meanOf(front).y, 0.1);
     // The two windings may round differently: places and depths of texels move by a rounding.
-    EXPECT_LT(largestDifference(front, back), (technique == "rsm" ? 1e-2 : 2e-3) * meanOf(front).y)
-        << technique;
+    EXPECT_LT(largestDifference(front, back), (technique == "rsm" ? 1e-2 : 2e-3) * meanOf(front).y) << technique;
   }
   PathTracer::Settings path;
   path.size = {32, 24};
@@ -155,7 +154,7 @@ TEST_F(SidesAndChannels, FormFactorsOfTrianglesThatTheHorizonCuts) {
       corners.emplace_back(glm::vec3(p), 0.0f);
     }
     ++below[static_cast<std::size_t>(under)];
-    expected.push_back(twin::pointToPolygon({0, 0, 0}, {0, 0, 1}, triangle));
+    expected.push_back(reference::pointToPolygon({0, 0, 0}, {0, 0, 1}, triangle));
   }
   for (const int count : below) EXPECT_GT(count, 300);
   const gl::Program& program = library().loadCompute("polygon probe", "radiosity/polygon_probe.comp", {});

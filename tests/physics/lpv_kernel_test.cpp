@@ -1,4 +1,4 @@
-// Known answers of the light propagation volume, from its double-precision twin (no GL).
+// Known answers of the light propagation volume, from its double-precision reference implementation (no GL).
 //
 // Expected values were computed from the formulas of [Kaplanyan2010] and [Kirsch2010] and are compared to their last
 // printed digit. Where a value follows in closed form, the test says so.
@@ -6,7 +6,7 @@
 // - "cosine" irradiances are <c | lobe(-n)>, pi/4 of our 4/(pi s^2) <c | lobe(-n)>.
 // - Values for the degenerate side directions include the slipped side constant, as in the kernel they are from.
 #include "lpv/settings.hpp"
-#include "support/lpv_twin.hpp"
+#include "support/lpv_reference.hpp"
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@
 #include <string>
 #include <utility>
 
-namespace lucerna::twin {
+namespace lucerna::reference {
 
 /// For messages of failed tests.
 void PrintTo(const Sh& sh, std::ostream* out) {
@@ -1274,4 +1274,4 @@ TEST(LpvDeviation, ComponentProductSideDirections) {
 }
 
 }  // namespace
-}  // namespace lucerna::twin
+}  // namespace lucerna::reference

@@ -3,7 +3,7 @@
 #include "pathtracer/path_tracer.hpp"
 #include "support/gl_fixture.hpp"
 #include "support/media_scenes.hpp"
-#include "support/media_twin.hpp"
+#include "support/media_reference.hpp"
 
 #include <gtest/gtest.h>
 
@@ -47,7 +47,7 @@ TEST_F(MediaDeviations, DistanceWithoutPdf) {
 TEST_F(MediaDeviations, BoostedInteraction) {
   // An albedo of 0.2 renders as one of 0.5.
   const Scene scene = slab(grey(0.2, 1.0, 0.0), 1.0, 1.0);
-  const twin::SlabResult right = twin::walkSlab(0.2, 1.0, 0.0, 1.0, 1.0, 2000000, 1);
+  const reference::SlabResult right = reference::walkSlab(0.2, 1.0, 0.0, 1.0, 1.0, 2000000, 1);
   expectSlab("corrected", measure(scene, 256, {}), right.reflectance, right.transmittance,
              3.5 * right.transmittanceError);
   expectSlab("boosted-interaction", measure(scene, 256, {.boostedInteraction = true}), .099119, .446058);

@@ -4,7 +4,7 @@
 // Seeds are fixed; statistical figures pass within 3.5 of their standard errors.
 #include "support/media_fixture.hpp"
 #include "support/media_scenes.hpp"
-#include "support/media_twin.hpp"
+#include "support/media_reference.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -81,8 +81,8 @@ TEST_F(MediaInterfaces, ReflectanceIsThatOfTheRelativeIndex) {
       scene.cameras = {cameraAt(at + 2.0 * glm::dvec3(std::sqrt(1.0 - mu * mu), mu, 0.0), at)};
       const auto cosineIn = [&](double n) { return std::sqrt(1.0 - (1.0 - mu * mu) / (n * n)); };
       const auto both = [](double r, double s) { return r + (1.0 - r) * (1.0 - r) * s / (1.0 - r * s); };
-      const double top = twin::fresnel(mu, 1.0 / 1.5), between = twin::fresnel(cosineIn(1.5), 1.5 / 1.33),
-                   bottom = twin::fresnel(cosineIn(1.33), 1.33);
+      const double top = reference::fresnel(mu, 1.0 / 1.5), between = reference::fresnel(cosineIn(1.5), 1.5 / 1.33),
+                   bottom = reference::fresnel(cosineIn(1.33), 1.33);
       // Layers that absorb nothing add alike from either side.
       const double exact = both(both(top, between), bottom);
       PathTracer::Settings settings;

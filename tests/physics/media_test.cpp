@@ -8,7 +8,7 @@
 #include "pathtracer/path_tracer.hpp"
 #include "support/gl_fixture.hpp"
 #include "support/media_scenes.hpp"
-#include "support/media_twin.hpp"
+#include "support/media_reference.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -194,7 +194,7 @@ TEST_F(MediaPhysics, SingleScatteringOfALamp) {
         const glm::dvec3 to = light.position - glm::dvec3(0.0, 0.0, -t);
         const double r = glm::length(to);
         exact += 1e-4 * scattering[c] * std::exp(-extinction * (t + r)) / (r * r) *
-                 twin::henyeyGreensteinPdf(0.6, -to.z / r);
+                 reference::henyeyGreensteinPdf(0.6, -to.z / r);
       }
       expectExact(fmt::format("lamp {} beside, channel {}", beside, c), s.mean[c], s.meanError[c], exact, 0.02 * exact);
     }

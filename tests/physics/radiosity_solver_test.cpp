@@ -4,7 +4,7 @@
 #include "radiosity/form_factor_matrix.hpp"
 #include "radiosity/hemicube_map.hpp"
 #include "radiosity/solvers.hpp"
-#include "support/form_factor_twin.hpp"
+#include "support/form_factor_reference.hpp"
 
 #include <gtest/gtest.h>
 
@@ -38,11 +38,11 @@ struct Cube {
   RadiositySystem system;
 
   explicit Cube(int n) {
-    const auto squares = twin::cubeSquares(n);
+    const auto squares = reference::cubeSquares(n);
     std::vector<std::vector<double>> dense;
     for (const auto& a : squares) {
       auto& row = dense.emplace_back();
-      for (const auto& b : squares) row.push_back(&a == &b ? 0.0 : twin::areaToArea(a, b, 4));
+      for (const auto& b : squares) row.push_back(&a == &b ? 0.0 : reference::areaToArea(a, b, 4));
       system.areas.push_back(a.area());
     }
     matrix = matrixOf(dense);
@@ -300,12 +300,12 @@ TEST(RadiosityKnown, TheSixPatchCube) {
 TEST(RadiosityKnown, RepairMakesReciprocityAndSums) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> noise(0.7, 1.3);
-  const auto squares = twin::cubeSquares(3);
+  const auto squares = reference::cubeSquares(3);
   std::vector<std::vector<double>> dense;
   std::vector<double> areas;
   for (const auto& a : squares) {
     auto& row = dense.emplace_back();
-    for (const auto& b : squares) row.push_back(&a == &b ? 0.0 : noise(random) * twin::areaToArea(a, b, 3));
+    for (const auto& b : squares) row.push_back(&a == &b ? 0.0 : noise(random) * reference::areaToArea(a, b, 3));
     areas.push_back(a.area());
   }
   FormFactorMatrix matrix = matrixOf(dense);
@@ -330,12 +330,12 @@ TEST(RadiosityKnown, DeltaFormFactors) {
 }
 
 TEST(RadiosityKnown, TheReferenceKnowsTheClosedForms) {
-  EXPECT_NEAR(twin::opposedSquares(1.0), 0.199824895698387, 1e-14);
-  const auto walls = twin::cubeSquares(1);
-  EXPECT_NEAR(twin::areaToArea(walls[0], walls[1], 12), 0.199824895698387, 1e-10);
-  EXPECT_NEAR(twin::areaToArea(walls[0], walls[2], 24), 0.200043776075403, 1e-4);
+  EXPECT_NEAR(reference::opposedSquares(1.0), 0.199824895698387, 1e-14);
+  const auto walls = reference::cubeSquares(1);
+  EXPECT_NEAR(reference::areaToArea(walls[0], walls[1], 12), 0.199824895698387, 1e-10);
+  EXPECT_NEAR(reference::areaToArea(walls[0], walls[2], 24), 0.200043776075403, 1e-4);
   const glm::dvec3 wall[4] = {{-0.5, 0, 1}, {0.5, 0, 1}, {0.5, 1, 1}, {-0.5, 1, 1}};
-  EXPECT_NEAR(twin::pointToPolygon({0, 0, 0}, {0, 1, 0}, wall), 0.0710934390469455, 1e-14);
+  EXPECT_NEAR(reference::pointToPolygon({0, 0, 0}, {0, 1, 0}, wall), 0.0710934390469455, 1e-14);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// The gather from a reflective shadow map held against exact answers, by its CPU twin and the engine's own sample
-// pattern.
+// The gather from a reflective shadow map held against exact answers, by its CPU reference implementation and the
+// engine's own sample pattern.
 #include "rsm/rsm_gather.hpp"
 #include "support/rsm_maps.hpp"
 
@@ -11,10 +11,10 @@
 namespace lucerna {
 namespace {
 
+using reference::GatherOptions;
+using reference::NearField;
 using test::cornerIrradiance;
 using test::cornerMap;
-using twin::GatherOptions;
-using twin::NearField;
 
 const glm::dvec3 kUp(0.0, 0.0, 1.0);
 
@@ -45,23 +45,23 @@ TEST(RsmGatherForm, PolygonFormFactorsAreExact) {
   const double a = 0.7, c = 1.3, x = a / c;
   const double corner = 2.0 * x / std::sqrt(1.0 + x * x) * std::atan(x / std::sqrt(1.0 + x * x)) / (2.0 * M_PI);
   const glm::dvec3 square[] = {{a, a, c}, {-a, a, c}, {-a, -a, c}, {a, -a, c}};
-  EXPECT_NEAR(twin::polygonFormFactor(square, kUp), 4.0 * corner, 1e-14);
+  EXPECT_NEAR(reference::polygonFormFactor(square, kUp), 4.0 * corner, 1e-14);
   // Cut by the horizon: a wall through it gives what the wall above it alone gives; below it there is nothing.
   const glm::dvec3 through[] = {{c, -a, -3.0}, {c, a, -3.0}, {c, a, 2.0}, {c, -a, 2.0}},
                    above[] = {{c, -a, 0.0}, {c, a, 0.0}, {c, a, 2.0}, {c, -a, 2.0}};
-  EXPECT_NEAR(twin::polygonFormFactor(through, kUp), twin::polygonFormFactor(above, kUp), 1e-14);
-  EXPECT_EQ(twin::polygonFormFactor(through, glm::dvec3(-1.0, 0.0, 0.0)), 0.0);
+  EXPECT_NEAR(reference::polygonFormFactor(through, kUp), reference::polygonFormFactor(above, kUp), 1e-14);
+  EXPECT_EQ(reference::polygonFormFactor(through, glm::dvec3(-1.0, 0.0, 0.0)), 0.0);
 }
 
 TEST(RsmGatherCorner, AllTexelsGiveTheExactAnswerHoweverNear) {
   // Square texels of 0.15625, so that h goes from a hundred-and-fiftieth of a texel to six. The surfels tile the wall:
   // what is left is the midpoint rule's error where a surfel is taken for a point, 1/20 (t/d)^2 for this kernel, d = 2
   // t being the least.
-  const twin::RsmMap map = cornerMap({640, 64});
+  const reference::RsmMap map = cornerMap({640, 64});
   std::printf("h       h/texel  exact    quad    disc    clamp   none  (over exact)\n");
   for (const double h : {0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0}) {
     const auto at = [&](NearField nearField) {
-      return luminance(twin::bruteForceIrradiance(map, {h, 0.0, 0.0}, kUp, {2.0, nearField, 0.15625})) /
+      return luminance(reference::bruteForceIrradiance(map, {h, 0.0, 0.0}, kUp, {2.0, nearField, 0.15625})) /
              cornerIrradiance(h);
     };
     std::printf("%-7g %-8.4f %.4f  %.4f  %.4f  %.4f  %.4f\n", h, h / 0.15625, cornerIrradiance(h), at(NearField::quad),
@@ -81,19 +81,22 @@ TEST(RsmGatherCorner, ElongatedTexelsToo) {
   // The same error, with d from sqrt(2) times the longer edge on.
   for (const glm::ivec2& size : {glm::ivec2(128, 128), glm::ivec2(1024, 64), glm::ivec2(2048, 16)})
     for (const double h : {0.001, 0.1, 1.0})
-      EXPECT_NEAR(luminance(twin::bruteForceIrradiance(cornerMap(size), {h, 0.0, 0.0}, kUp, {})) / cornerIrradiance(h),
-                  1.0, 0.03)
+      EXPECT_NEAR(
+          luminance(reference::bruteForceIrradiance(cornerMap(size), {h, 0.0, 0.0}, kUp, {})) / cornerIrradiance(h),
+          1.0, 0.03)
           << size.x << " " << h;
 }
 
 TEST(RsmGatherCorner, TheSampledEstimateIsTheSum) {
-  const twin::RsmMap map = cornerMap({640, 64});
+  const reference::RsmMap map = cornerMap({640, 64});
   const GatherOptions options{2.0, NearField::quad};
   for (const double h : {0.001, 0.03, 0.3, 1.0}) {
     const glm::dvec3 x(h, 0.0, 0.0);
-    const Estimate e = estimate(
-        100, RsmGather::Weight::unbiased, 16384, 11,  // the radius is 1280 texels: 13 samples fall on the nearest one
-        [&](const auto& pattern) { return luminance(twin::gather(map, pattern, x, kUp, 0.0, options).irradiance); });
+    const Estimate e = estimate(100, RsmGather::Weight::unbiased, 16384,
+                                11,  // the radius is 1280 texels: 13 samples fall on the nearest one
+                                [&](const auto& pattern) {
+                                  return luminance(reference::gather(map, pattern, x, kUp, 0.0, options).irradiance);
+                                });
     EXPECT_NEAR(e.mean / cornerIrradiance(h), 1.0, 3.0 * e.standardError / cornerIrradiance(h) + 0.015) << h;
     EXPECT_LT(e.standardError / e.mean, 0.05) << h;
   }
@@ -102,13 +105,13 @@ TEST(RsmGatherCorner, TheSampledEstimateIsTheSum) {
 TEST(RsmGatherWeight, UnbiasedOnRandomScenes) {
   // 3 standard errors: over 40 points a false alarm has a chance of 1 - 0.9973^40 = 10 %, so two may stray, and none
   // beyond 4.5.
-  const twin::RsmMap map = test::randomMap({48, 36}, 3);
+  const reference::RsmMap map = test::randomMap({48, 36}, 3);
   const GatherOptions options{1.5, NearField::quad};  // all of the map
   int strays = 0;
   for (const test::SurfacePoint& p : test::randomPoints(map, 40, 4)) {
-    const double exact = luminance(twin::bruteForceIrradiance(map, p.position, p.normal, options));
+    const double exact = luminance(reference::bruteForceIrradiance(map, p.position, p.normal, options));
     const Estimate e = estimate(60, RsmGather::Weight::unbiased, 400, 5, [&](const auto& pattern) {
-      return luminance(twin::gather(map, pattern, p.position, p.normal, 0.7, options).irradiance);
+      return luminance(reference::gather(map, pattern, p.position, p.normal, 0.7, options).irradiance);
     });
     strays += std::abs(e.mean - exact) > 3.0 * e.standardError + 1e-12 ? 1 : 0;
     EXPECT_LE(std::abs(e.mean - exact), 4.5 * e.standardError + 1e-12);
@@ -137,11 +140,11 @@ TEST(RsmGatherWeight, ThePublishedOneHasItsKnownFactors) {
 
 TEST(RsmGatherWeight, TheMapsResolutionDoesNotChangeTheLight) {
   const auto mean = [](int n) {
-    const twin::RsmMap map = cornerMap({5 * n, n});
+    const reference::RsmMap map = cornerMap({5 * n, n});
     double sum = 0.0;
     for (int i = 0; i < 40; ++i)
-      sum += luminance(twin::gather(map, RsmGather::pattern(400, RsmGather::Weight::unbiased),
-                                    {0.05 * (i + 1), 0.1 * i, 0.0}, kUp, 0.0, {})
+      sum += luminance(reference::gather(map, RsmGather::pattern(400, RsmGather::Weight::unbiased),
+                                         {0.05 * (i + 1), 0.1 * i, 0.0}, kUp, 0.0, {})
                            .irradiance);
     return sum / 40.0;
   };
@@ -151,12 +154,12 @@ TEST(RsmGatherWeight, TheMapsResolutionDoesNotChangeTheLight) {
 
 TEST(RsmGatherWeight, ScaleInvariant) {
   for (const double scale : {0.01, 100.0}) {
-    const twin::RsmMap one = test::randomMap({24, 18}, 8), scaled = test::randomMap({24, 18}, 8, scale);
+    const reference::RsmMap one = test::randomMap({24, 18}, 8), scaled = test::randomMap({24, 18}, 8, scale);
     const auto pattern = RsmGather::pattern(400, RsmGather::Weight::unbiased);
     for (const test::SurfacePoint& p : test::randomPoints(one, 20, 9)) {
-      const double expected = luminance(twin::gather(one, pattern, p.position, p.normal, 0.0, {}).irradiance);
-      EXPECT_NEAR(luminance(twin::gather(scaled, pattern, scale * p.position, p.normal, 0.0, {}).irradiance), expected,
-                  1e-9 * expected);
+      const double expected = luminance(reference::gather(one, pattern, p.position, p.normal, 0.0, {}).irradiance);
+      EXPECT_NEAR(luminance(reference::gather(scaled, pattern, scale * p.position, p.normal, 0.0, {}).irradiance),
+                  expected, 1e-9 * expected);
     }
   }
 }

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kWidth = 64;  // of the hand-made maps
 
-twin::Sh shOf(const glm::vec4& c, double scale) { return {scale * c.x, scale * glm::dvec3(c.y, c.z, c.w)}; }
+reference::Sh shOf(const glm::vec4& c, double scale) { return {scale * c.x, scale * glm::dvec3(c.y, c.z, c.w)}; }
 
 }  // namespace
 
@@ -45,8 +45,8 @@ RsmTextures::RsmTextures(std::span<const RsmTexel> texels, double texelArea, gl:
   flux_.upload(gl::Texels::rgbaFloat, fluxes.data());
 }
 
-std::vector<twin::Vpl> vplsOf(std::span<const RsmTexel> texels, double texelArea) {
-  std::vector<twin::Vpl> vpls;
+std::vector<reference::Vpl> vplsOf(std::span<const RsmTexel> texels, double texelArea) {
+  std::vector<reference::Vpl> vpls;
   for (const RsmTexel& texel : texels) {
     if (!(texel.position.w > 0.5f)) continue;
     const double area = texelArea / std::max(static_cast<double>(texel.normal.w), 0.05);
@@ -56,7 +56,7 @@ std::vector<twin::Vpl> vplsOf(std::span<const RsmTexel> texels, double texelArea
   return vpls;
 }
 
-twin::GridSpec gridOf(const Cascade& cascade, int cells) {
+reference::GridSpec gridOf(const Cascade& cascade, int cells) {
   return {glm::ivec3(cells), cascade.minimum(), cascade.cellSize};
 }
 
@@ -71,31 +71,32 @@ LightPropagationVolume runVolume(gl::ProgramLibrary& programs, const gl::Capabil
   return lpv;
 }
 
-std::vector<twin::VolumeRgb> readVolume(const LpvVolume& volume, const LpvInputs& inputs) {
+std::vector<reference::VolumeRgb> readVolume(const LpvVolume& volume, const LpvInputs& inputs) {
   const int cells = volume[0].size().x;
   CHECK(volume[0].size() == glm::ivec3(cells, cells, cells * static_cast<int>(inputs.cascades.size())), "{} cells",
         cells);
-  std::vector<twin::VolumeRgb> result;
-  for (const Cascade& cascade : inputs.cascades) result.push_back(twin::makeVolumeRgb(gridOf(cascade, cells)));
+  std::vector<reference::VolumeRgb> result;
+  for (const Cascade& cascade : inputs.cascades) result.push_back(reference::makeVolumeRgb(gridOf(cascade, cells)));
   for (std::size_t channel = 0; channel < 3; ++channel) {
     const std::vector<glm::vec4> texels = volume[channel].readRgba();
     auto texel = texels.begin();
-    for (twin::VolumeRgb& cascade : result) {
+    for (reference::VolumeRgb& cascade : result) {
       const double s = cascade[channel].grid.cellSize;
-      for (twin::Sh& cell : cascade[channel].cells)
+      for (reference::Sh& cell : cascade[channel].cells)
         cell = shOf(*texel++, static_cast<double>(inputs.referenceIrradiance) * s * s);
     }
   }
   return result;
 }
 
-std::vector<twin::Volume> readGeometryVolume(const LightPropagationVolume& lpv, const LpvInputs& inputs) {
+std::vector<reference::Volume> readGeometryVolume(const LightPropagationVolume& lpv, const LpvInputs& inputs) {
   const std::vector<glm::vec4> texels = lpv.geometryVolume()->readRgba();
-  std::vector<twin::Volume> result;
+  std::vector<reference::Volume> result;
   auto texel = texels.begin();
   for (const Cascade& cascade : inputs.cascades) {
-    twin::Volume& volume = result.emplace_back(twin::geometryGrid(gridOf(cascade, lpv.settings().cascades.cells)));
-    for (twin::Sh& cell : volume.cells) cell = shOf(*texel++, 1.0);
+    reference::Volume& volume =
+        result.emplace_back(reference::geometryGrid(gridOf(cascade, lpv.settings().cascades.cells)));
+    for (reference::Sh& cell : volume.cells) cell = shOf(*texel++, 1.0);
   }
   return result;
 }
@@ -122,10 +123,10 @@ std::vector<glm::vec3> probeIrradiance(gl::ProgramLibrary& programs, const Light
   return result;
 }
 
-double relativeError(const twin::Volume& expected, const twin::Volume& actual) {
+double relativeError(const reference::Volume& expected, const reference::Volume& actual) {
   double scale = 0.0, difference = 0.0;
   for (std::size_t i = 0; i < expected.cells.size(); ++i) {
-    const twin::Sh apart = expected.cells[i] - actual.cells[i];
+    const reference::Sh apart = expected.cells[i] - actual.cells[i];
     for (const auto& [reference, error] :
          {std::pair{expected.cells[i].c0, apart.c0}, std::pair{expected.cells[i].c1.x, apart.c1.x},
           std::pair{expected.cells[i].c1.y, apart.c1.y}, std::pair{expected.cells[i].c1.z, apart.c1.z}}) {
@@ -137,7 +138,7 @@ double relativeError(const twin::Volume& expected, const twin::Volume& actual) {
   return difference == 0.0 ? 0.0 : difference / scale;
 }
 
-double relativeError(const twin::VolumeRgb& expected, const twin::VolumeRgb& actual) {
+double relativeError(const reference::VolumeRgb& expected, const reference::VolumeRgb& actual) {
   double error = 0.0;
   for (std::size_t channel = 0; channel < 3; ++channel)
     error = std::max(error, relativeError(expected[channel], actual[channel]));

@@ -1,10 +1,11 @@
-// The GL light propagation volume fed by hand-made reflective shadow maps and read back in the units of the CPU twin.
+// The GL light propagation volume fed by hand-made reflective shadow maps and read back in the units of the CPU
+// reference implementation.
 #pragma once
 
 #include "gl/context.hpp"
 #include "gl/program.hpp"
 #include "lpv/light_propagation_volume.hpp"
-#include "support/lpv_twin.hpp"
+#include "support/lpv_reference.hpp"
 
 #include <functional>
 #include <span>
@@ -34,19 +35,20 @@ class RsmTextures {
   double largestFlux_ = 0.0;  ///< of the texels that carry finite light
 };
 
-/// The same texels as the twin takes them; background is left out. Area: texelArea / max(cosine, 1/20).
-std::vector<twin::Vpl> vplsOf(std::span<const RsmTexel> texels, double texelArea);
+/// The same texels as the reference implementation takes them; background is left out. Area: texelArea / max(cosine,
+/// 1/20).
+std::vector<reference::Vpl> vplsOf(std::span<const RsmTexel> texels, double texelArea);
 
-twin::GridSpec gridOf(const Cascade& cascade, int cells);
+reference::GridSpec gridOf(const Cascade& cascade, int cells);
 
 /// All stages of a volume made for it; join() unless told otherwise.
 LightPropagationVolume runVolume(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities,
                                  const LpvSettings& settings, const LpvInputs& inputs, bool join = true);
 
 /// One cascade of a volume that was read back, c = value * E_ref * s^2.
-std::vector<twin::VolumeRgb> readVolume(const LpvVolume& volume, const LpvInputs& inputs);
+std::vector<reference::VolumeRgb> readVolume(const LpvVolume& volume, const LpvInputs& inputs);
 /// One cascade each of the geometry volume; nothing is scaled there.
-std::vector<twin::Volume> readGeometryVolume(const LightPropagationVolume& lpv, const LpvInputs& inputs);
+std::vector<reference::Volume> readGeometryVolume(const LightPropagationVolume& lpv, const LpvInputs& inputs);
 
 /// A point and the unit normal of the surface there.
 struct Probe {
@@ -59,8 +61,8 @@ std::vector<glm::vec3> probeIrradiance(gl::ProgramLibrary& programs, const Light
 
 /// Largest difference of a coefficient over the largest coefficient of `expected`: the error of a sum is set by its
 /// largest terms, and a cell's small coefficients are differences of larger ones.
-double relativeError(const twin::Volume& expected, const twin::Volume& actual);
-double relativeError(const twin::VolumeRgb& expected, const twin::VolumeRgb& actual);
+double relativeError(const reference::Volume& expected, const reference::Volume& actual);
+double relativeError(const reference::VolumeRgb& expected, const reference::VolumeRgb& actual);
 /// What that may be with 32-bit floats.
 inline constexpr double kFullTolerance = 1e-5;
 

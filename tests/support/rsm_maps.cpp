@@ -5,8 +5,8 @@
 
 namespace lucerna::test {
 
-twin::RsmMap cornerMap(glm::ivec2 size) {
-  twin::RsmMap map;
+reference::RsmMap cornerMap(glm::ivec2 size) {
+  reference::RsmMap map;
   map.size = size;
   map.corner = {0.0, -50.0, 0.0};
   map.right = {0.0, 1.0, 0.0};
@@ -23,10 +23,10 @@ twin::RsmMap cornerMap(glm::ivec2 size) {
 
 double cornerIrradiance(double h) { return 0.5 * (1.0 - h / std::hypot(h, kCornerHeight)); }
 
-twin::RsmMap randomMap(glm::ivec2 size, std::uint32_t seed, double scale) {
+reference::RsmMap randomMap(glm::ivec2 size, std::uint32_t seed, double scale) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> unit(0.0, 1.0), both(-1.0, 1.0);
-  twin::RsmMap map;
+  reference::RsmMap map;
   map.size = size;
   map.direction = glm::normalize(glm::dvec3(0.3, -1.0, 0.4));
   map.right = glm::normalize(glm::cross(map.direction, glm::dvec3(0.0, 1.0, 0.0)));
@@ -50,8 +50,8 @@ twin::RsmMap randomMap(glm::ivec2 size, std::uint32_t seed, double scale) {
   return map;
 }
 
-void roundToFloat(twin::RsmMap& map) {
-  for (twin::RsmMap::Texel& texel : map.texels) {
+void roundToFloat(reference::RsmMap& map) {
+  for (reference::RsmMap::Texel& texel : map.texels) {
     texel.position = glm::dvec3(glm::vec3(texel.position));
     texel.normal = glm::dvec3(glm::vec3(texel.normal));
     texel.flux = glm::dvec3(glm::vec3(texel.flux));
@@ -59,7 +59,7 @@ void roundToFloat(twin::RsmMap& map) {
   }
 }
 
-std::vector<SurfacePoint> randomPoints(const twin::RsmMap& map, int count, std::uint32_t seed) {
+std::vector<SurfacePoint> randomPoints(const reference::RsmMap& map, int count, std::uint32_t seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> both(-1.0, 1.0);
   std::vector<SurfacePoint> points;

@@ -21,7 +21,7 @@ Scene plainScene() {
   return scene;
 }
 
-SceneFeatures plainNeeds() {
+SceneFeatures plainFeatures() {
   SceneFeatures features;
   features.directionalLight = true;
   features.indirect = true;
@@ -30,7 +30,7 @@ SceneFeatures plainNeeds() {
 
 TEST(SceneFeaturesTest, AnEmptySceneNeedsNothing) { EXPECT_EQ(analyse(Scene{}), SceneFeatures{}); }
 
-TEST(SceneFeaturesTest, APlainSceneNeedsOnlyItsLight) { EXPECT_EQ(analyse(plainScene()), plainNeeds()); }
+TEST(SceneFeaturesTest, APlainSceneNeedsOnlyItsLight) { EXPECT_EQ(analyse(plainScene()), plainFeatures()); }
 
 TEST(SceneFeaturesTest, EachFeatureRaisesItsFlagAlone) {
   struct Case {
@@ -63,7 +63,7 @@ TEST(SceneFeaturesTest, EachFeatureRaisesItsFlagAlone) {
   for (const Case& c : cases) {
     Scene scene = plainScene();
     c.change(scene);
-    SceneFeatures expected = plainNeeds();
+    SceneFeatures expected = plainFeatures();
     expected.*c.flag = true;
     EXPECT_EQ(analyse(scene), expected) << c.name;
   }
@@ -84,13 +84,13 @@ TEST(SceneFeaturesTest, MaterialsOfNoDrawnMeshDoNotCount) {
   unused.diffuseTexture = 0;
   unused.alphaMasked = true;
   unused.specular = unused.emission = glm::vec3(1.0f);
-  EXPECT_EQ(analyse(scene), plainNeeds());
+  EXPECT_EQ(analyse(scene), plainFeatures());
   Mesh empty;
   empty.material = 1;
   scene.meshes.push_back(empty);  // no indices: not drawn
-  EXPECT_EQ(analyse(scene), plainNeeds());
+  EXPECT_EQ(analyse(scene), plainFeatures());
   scene.meshes.back().indexCount = 3;
-  EXPECT_NE(analyse(scene), plainNeeds());
+  EXPECT_NE(analyse(scene), plainFeatures());
 }
 
 TEST(SceneFeaturesTest, NoSunOrADarkSunIsNoLight) {

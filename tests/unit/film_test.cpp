@@ -39,7 +39,7 @@ Film filmOfSamples(std::uint32_t first, std::uint32_t last, std::uint64_t identi
     for (const glm::dvec3& v : values) squares += (v - mean) * (v - mean);
     film.mean.push_back(wordsOf(mean, last - first));
     film.rest.push_back(wordsOf(mean - glm::dvec3(glm::vec3(mean)), 0));
-    film.spread.push_back(wordsOf(squares, 0));
+    film.m2.push_back(wordsOf(squares, 0));
   }
   return film;
 }
@@ -98,7 +98,7 @@ TEST(Film, BytesAreReadBackAndDamageIsSeen) {
   EXPECT_EQ(read.identity, film.identity);
   EXPECT_EQ(read.size, film.size);
   EXPECT_EQ(read.mean, film.mean);
-  EXPECT_EQ(read.spread, film.spread);
+  EXPECT_EQ(read.m2, film.m2);
   EXPECT_EQ(read.rest, film.rest);
   for (const std::size_t at :
        {std::size_t{0}, std::size_t{32}, bytes.size() - 1}) {  // the kind of file, the first sample, the last word

@@ -101,7 +101,7 @@ TEST(Form, LongFunctionsHaveHeadings) {
         heading = i;
       }
     }
-  EXPECT_GT(longOnes, 20u);
+  EXPECT_GT(longOnes, 10u);
 }
 
 // Tables, listings and pictures are as wide as they must be.

@@ -443,11 +443,11 @@ TEST(ShaderForm, GroupsDoNotIndexBuffersUnchecked) {
       1u);
 }
 
-// Drivers shade pixels beside the scissor, too: only forward/asked.glsl writes, after it has compared.
+// Drivers shade pixels beside the scissor, too: only forward/inspected.glsl writes, after it has compared.
 TEST(ShaderForm, OnlyTheAskedPixelIsRecorded) {
   const std::vector<std::string> writes = linesWith(shaders(), std::regex(R"(\basked\[[^;]*=)"));
   ASSERT_EQ(writes.size(), 1u);
-  EXPECT_TRUE(writes.front().starts_with("shaders/forward/asked.glsl")) << writes.front();
+  EXPECT_TRUE(writes.front().starts_with("shaders/forward/inspected.glsl")) << writes.front();
 }
 
 // Counters of a frame take one atomic per group of pixels: at 1920x1080 half a million waited for one address.

@@ -44,28 +44,29 @@ struct CascadesChecks {
       return
           [=](Point p) { return glm::dvec4(value(p[0].x, p[0].w), value(p[0].y, p[0].w), value(p[0].z, p[0].w), 0.0); };
     };
-    c.twin("snapped centres",
-           {.probe = 1,
-            // At least a fiftieth away from a boundary between cells, so that rounding decides nothing.
-            .draw =
-                [](Random& r, std::span<glm::vec4> p) {
-                  const double s = r.uniform(0.1, 2.0);
-                  glm::dvec3 q;
-                  for (int k = 0; k < 3; ++k) q[k] = (std::floor(r.uniform(-30, 30)) + r.uniform(0.02, 0.98) - 0.5) * s;
-                  p[0] = four(q, s);
-                },
-            .reference = of([](double x, double s) { return std::floor(x / s + 0.5) * s; }),
-            .mistakes = {{{"truncation",
-                           "int() truncates towards zero: left of the origin the grid is a cell off, and jumps as the "
-                           "camera crosses it"},
-                          of([](double x, double s) { return std::trunc(x / s + 0.5) * s; })},
-                         {{"whole-units", "the grid moves in whole cells, not in whole units of the scene"},
-                          of([](double x, double) { return std::floor(x + 0.5); })},
-                         {{"not-rounded", "the nearest whole number of cells: add half before floor"},
-                          of([](double x, double s) { return std::floor(x / s) * s; })},
-                         {{"not-snapped", "nothing is snapped"}, of([](double x, double) { return x; })},
-                         {{"in-cells", "the result is a position, not a number of cells: multiply by the cell size"},
-                          of([](double x, double s) { return std::floor(x / s + 0.5); })}}}) &&
+    c.againstReference(
+        "snapped centres",
+        {.probe = 1,
+         // At least a fiftieth away from a boundary between cells, so that rounding decides nothing.
+         .draw =
+             [](Random& r, std::span<glm::vec4> p) {
+               const double s = r.uniform(0.1, 2.0);
+               glm::dvec3 q;
+               for (int k = 0; k < 3; ++k) q[k] = (std::floor(r.uniform(-30, 30)) + r.uniform(0.02, 0.98) - 0.5) * s;
+               p[0] = four(q, s);
+             },
+         .reference = of([](double x, double s) { return std::floor(x / s + 0.5) * s; }),
+         .mistakes = {{{"truncation",
+                        "int() truncates towards zero: left of the origin the grid is a cell off, and jumps as the "
+                        "camera crosses it"},
+                       of([](double x, double s) { return std::trunc(x / s + 0.5) * s; })},
+                      {{"whole-units", "the grid moves in whole cells, not in whole units of the scene"},
+                       of([](double x, double) { return std::floor(x + 0.5); })},
+                      {{"not-rounded", "the nearest whole number of cells: add half before floor"},
+                       of([](double x, double s) { return std::floor(x / s) * s; })},
+                      {{"not-snapped", "nothing is snapped"}, of([](double x, double) { return x; })},
+                      {{"in-cells", "the result is a position, not a number of cells: multiply by the cell size"},
+                       of([](double x, double s) { return std::floor(x / s + 0.5); })}}}) &&
         // A uniform error between -1/2 and 1/2 of a cell has the mean square 1/12.
         c.mean("the mean square of what snapping moves is cell^2 / 12",
                {.probe = 8, .inputs = {four(cell)}, .expected = std::pow(static_cast<float>(cell), 2.0) / 12.0});
@@ -81,7 +82,7 @@ struct CascadesChecks {
       };
     };
     const auto ofMost = of([](const glm::dvec3& v) { return most(v); }, 2.0, -1);
-    c.twin(
+    c.againstReference(
         "cascades of points",
         {.probe = 2,
          .stride = 2,
@@ -119,35 +120,36 @@ struct CascadesChecks {
     const auto of = [](double (*value)(const glm::dvec3& off, double b)) {
       return [=](Point p) { return glm::dvec4(value((glm::dvec3(p[0]) - glm::dvec3(p[1])) / double(p[0].w), p[1].w)); };
     };
-    c.twin("weights at points",
-           {.probe = 3,
-            .stride = 2,
-            .draw =
-                [](Random& r, std::span<glm::vec4> p) {
-                  const double e = r.uniform(0.5, 2);
-                  p[1] = four(r.direction() * 2.0, r.uniform(0.1, 0.6)),
-                  p[0] = four(glm::dvec3(p[1]) + inCube(r) * 1.2 * e, e);
-                },
-            .reference = of([](const glm::dvec3& o, double b) { return std::clamp((1.0 - most(o)) / b, 0.0, 1.0); }),
-            .mistakes =
-                {{{"round-cascades", "a cascade is a cube: the largest of the three distances counts"},
-                  of([](const glm::dvec3& o, double b) { return std::clamp((1.0 - glm::length(o)) / b, 0.0, 1.0); })},
-                 {{"hard-edge", "no band: the cascade ends at once, and the seam shows"},
-                  of([](const glm::dvec3& o, double) { return most(o) <= 1.0 ? 1.0 : 0.0; })},
-                 {{"inverted", "1 is inside, 0 at the border"},
-                  of([](const glm::dvec3& o, double b) { return 1.0 - std::clamp((1.0 - most(o)) / b, 0.0, 1.0); })},
-                 {{"no-clamp", "a weight lies between 0 and 1"},
-                  of([](const glm::dvec3& o, double b) { return (1.0 - most(o)) / b; })},
-                 {{"band-outside", "the band lies within the cascade: beyond its border there is no data"},
-                  of([](const glm::dvec3& o, double b) { return std::clamp(1.0 - (most(o) - 1.0) / b, 0.0, 1.0); })},
-                 {{"sum-of-axes", "the axes are not multiplied: their largest distance counts"},
-                  of([](const glm::dvec3& o, double b) {
-                    double w = 1.0;
-                    for (int k = 0; k < 3; ++k) w *= std::clamp((1.0 - std::abs(o[k])) / b, 0.0, 1.0);
-                    return w;
-                  })}},
-            // The position's float rounding, relative to the band.
-            .tolerance = 1e-3}) &&
+    c.againstReference(
+        "weights at points",
+        {.probe = 3,
+         .stride = 2,
+         .draw =
+             [](Random& r, std::span<glm::vec4> p) {
+               const double e = r.uniform(0.5, 2);
+               p[1] = four(r.direction() * 2.0, r.uniform(0.1, 0.6)),
+               p[0] = four(glm::dvec3(p[1]) + inCube(r) * 1.2 * e, e);
+             },
+         .reference = of([](const glm::dvec3& o, double b) { return std::clamp((1.0 - most(o)) / b, 0.0, 1.0); }),
+         .mistakes =
+             {{{"round-cascades", "a cascade is a cube: the largest of the three distances counts"},
+               of([](const glm::dvec3& o, double b) { return std::clamp((1.0 - glm::length(o)) / b, 0.0, 1.0); })},
+              {{"hard-edge", "no band: the cascade ends at once, and the seam shows"},
+               of([](const glm::dvec3& o, double) { return most(o) <= 1.0 ? 1.0 : 0.0; })},
+              {{"inverted", "1 is inside, 0 at the border"},
+               of([](const glm::dvec3& o, double b) { return 1.0 - std::clamp((1.0 - most(o)) / b, 0.0, 1.0); })},
+              {{"no-clamp", "a weight lies between 0 and 1"},
+               of([](const glm::dvec3& o, double b) { return (1.0 - most(o)) / b; })},
+              {{"band-outside", "the band lies within the cascade: beyond its border there is no data"},
+               of([](const glm::dvec3& o, double b) { return std::clamp(1.0 - (most(o) - 1.0) / b, 0.0, 1.0); })},
+              {{"sum-of-axes", "the axes are not multiplied: their largest distance counts"},
+               of([](const glm::dvec3& o, double b) {
+                 double w = 1.0;
+                 for (int k = 0; k < 3; ++k) w *= std::clamp((1.0 - std::abs(o[k])) / b, 0.0, 1.0);
+                 return w;
+               })}},
+         // The position's float rounding, relative to the band.
+         .tolerance = 1e-3}) &&
         c.mean("mean weight over the cascade",
                {.probe = 9, .inputs = {four(halfExtent, band)}, .expected = meanWeight});
   }
@@ -157,29 +159,30 @@ struct CascadesChecks {
       return [=](Point p) { return glm::dvec4(value(p[0].x, p[0].y, p[0].z, p[0].w, p[1].x)); };
     };
 #define BLEND [](double f, double fc, double g, double gc, double w)
-    c.twin("blends", {.probe = 4,
-                      .stride = 2,
-                      .draw =
-                          [](Random& r, std::span<glm::vec4> p) {
-                            const double s = r.uniform(0.2, 1.5);
-                            p[0] = four(r.uniform(0.1, 3), s, r.uniform(0.1, 3), s * r.uniform(1.5, 3.0)),
-                            p[1] = four(r.uniform());
-                          },
-                      .reference = of(BLEND { return w * f / (fc * fc) + (1 - w) * g / (gc * gc); }),
-                      .mistakes = {{{"sum-of-cascades", "both cascades hold the same light: their sum counts it twice"},
-                                    of(BLEND { return f / (fc * fc) + g / (gc * gc) + 0.0 * w; })},
-                                   {{"weights-exchanged", "the weight is that of the fine cascade"},
-                                    of(BLEND { return (1 - w) * f / (fc * fc) + w * g / (gc * gc); })},
-                                   {{"cells-ignored", "flux per cell is no irradiance: each over its own cell's face"},
-                                    of(BLEND { return w * f + (1 - w) * g + 0.0 * (fc + gc); })},
-                                   {{"one-cell-for-both", "each cascade has cells of its own"},
-                                    of(BLEND { return (w * f + (1 - w) * g) / (fc * fc) + 0.0 * gc; })},
-                                   {{"cell-once", "a face has the area cell * cell"},
-                                    of(BLEND { return w * f / fc + (1 - w) * g / gc; })},
-                                   {{"volume-for-area", "a face has the area cell * cell, not a cell's volume"},
-                                    of(BLEND { return w * f / (fc * fc * fc) + (1 - w) * g / (gc * gc * gc); })},
-                                   {{"weight-once", "the weights of both must sum to 1"},
-                                    of(BLEND { return w * f / (fc * fc) + g / (gc * gc); })}}});
+    c.againstReference(
+        "blends", {.probe = 4,
+                   .stride = 2,
+                   .draw =
+                       [](Random& r, std::span<glm::vec4> p) {
+                         const double s = r.uniform(0.2, 1.5);
+                         p[0] = four(r.uniform(0.1, 3), s, r.uniform(0.1, 3), s * r.uniform(1.5, 3.0)),
+                         p[1] = four(r.uniform());
+                       },
+                   .reference = of(BLEND { return w * f / (fc * fc) + (1 - w) * g / (gc * gc); }),
+                   .mistakes = {{{"sum-of-cascades", "both cascades hold the same light: their sum counts it twice"},
+                                 of(BLEND { return f / (fc * fc) + g / (gc * gc) + 0.0 * w; })},
+                                {{"weights-exchanged", "the weight is that of the fine cascade"},
+                                 of(BLEND { return (1 - w) * f / (fc * fc) + w * g / (gc * gc); })},
+                                {{"cells-ignored", "flux per cell is no irradiance: each over its own cell's face"},
+                                 of(BLEND { return w * f + (1 - w) * g + 0.0 * (fc + gc); })},
+                                {{"one-cell-for-both", "each cascade has cells of its own"},
+                                 of(BLEND { return (w * f + (1 - w) * g) / (fc * fc) + 0.0 * gc; })},
+                                {{"cell-once", "a face has the area cell * cell"},
+                                 of(BLEND { return w * f / fc + (1 - w) * g / gc; })},
+                                {{"volume-for-area", "a face has the area cell * cell, not a cell's volume"},
+                                 of(BLEND { return w * f / (fc * fc * fc) + (1 - w) * g / (gc * gc * gc); })},
+                                {{"weight-once", "the weights of both must sum to 1"},
+                                 of(BLEND { return w * f / (fc * fc) + g / (gc * gc); })}}});
 #undef BLEND
   }
   // Task 5: splitDistance: between logarithmic and even splits.
@@ -187,7 +190,7 @@ struct CascadesChecks {
     const auto of = [](double (*value)(double t, double n, double f, double l)) {
       return [=](Point p) { return glm::dvec4(value((p[0].x + 1.0) / p[0].y, p[0].z, p[0].w, p[1].x)); };
     };
-    c.twin(
+    c.againstReference(
         "split distances",
         {.probe = 5,
          .stride = 2,
@@ -233,32 +236,36 @@ struct CascadesChecks {
   }
   // Task 6: three cascades around a point, by tasks 2 to 4.
   void together() {
-    c.twin("both sides of a border agree", {.probe = 6,
-                                            .stride = 2,
-                                            .draw =
-                                                [](Random& r, std::span<glm::vec4> p) {
-                                                  // A point on the border of cascade 0 or 1.
-                                                  const double e = r.uniform(1.0, 2.0);
-                                                  glm::dvec3 q = inCube(r);
-                                                  q[static_cast<int>(r.uniform(0, 3))] = r.uniform() < 0.5 ? -1.0 : 1.0;
-                                                  p[0] = four(q * e * (r.uniform() < 0.5 ? 1.0 : 2.0), e),
-                                                  p[1] = four(r.uniform(0.1, 0.5), r.uniform(0.1, 1.0));
-                                                },
-                                            .reference =
-                                                [](Point p) {
-                                                  const glm::dvec3 q(p[0]);
-                                                  return glm::dvec4(shown(q * 0.9999, p[0].w, p[1].x),
-                                                                    shown(q * 1.0001, p[0].w, p[1].x), 0.0, 0.0);
-                                                }}) &&
-        c.picture("seams", {.probe = 7,
-                            .inputs = {four(halfExtent, band, cell)},
-                            .reference =
-                                [&](glm::ivec2 p) {
-                                  return glm::dvec3(shown({(p.x + 0.5 - 48.0) / 10.0, (p.y + 0.5 - 32.0) / 10.0, 0.3},
-                                                          static_cast<float>(halfExtent), static_cast<float>(band)));
-                                },
-                            .caption = "Three cascades, each a little brighter than the one within, blended by your "
-                                       "functions: no line may show; the reference is the twin in double precision"});
+    c.againstReference("both sides of a border agree",
+                       {.probe = 6,
+                        .stride = 2,
+                        .draw =
+                            [](Random& r, std::span<glm::vec4> p) {
+                              // A point on the border of cascade 0 or 1.
+                              const double e = r.uniform(1.0, 2.0);
+                              glm::dvec3 q = inCube(r);
+                              q[static_cast<int>(r.uniform(0, 3))] = r.uniform() < 0.5 ? -1.0 : 1.0;
+                              p[0] = four(q * e * (r.uniform() < 0.5 ? 1.0 : 2.0), e),
+                              p[1] = four(r.uniform(0.1, 0.5), r.uniform(0.1, 1.0));
+                            },
+                        .reference =
+                            [](Point p) {
+                              const glm::dvec3 q(p[0]);
+                              return glm::dvec4(shown(q * 0.9999, p[0].w, p[1].x), shown(q * 1.0001, p[0].w, p[1].x),
+                                                0.0, 0.0);
+                            }}) &&
+        c.picture(
+            "seams",
+            {.probe = 7,
+             .inputs = {four(halfExtent, band, cell)},
+             .reference =
+                 [&](glm::ivec2 p) {
+                   return glm::dvec3(shown({(p.x + 0.5 - 48.0) / 10.0, (p.y + 0.5 - 32.0) / 10.0, 0.3},
+                                           static_cast<float>(halfExtent), static_cast<float>(band)));
+                 },
+             .caption =
+                 "Three cascades, each a little brighter than the one within, blended by your "
+                 "functions: no line may show; the reference is the reference implementation in double precision"});
   }
 
   void run() {

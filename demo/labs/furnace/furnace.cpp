@@ -38,28 +38,30 @@ struct FurnaceChecks {
     };
     const auto clamped = [](double x) { return std::max(0.0, x); };
     const glm::dvec3 n = glm::normalize(glm::dvec3(c.parameter("nx", -1.0, 1.0), 0.7, c.parameter("nz", -1.0, 1.0)));
-    c.twin("reflected light at points",
-           {.probe = 1,
-            .stride = 4,
-            .draw =
-                [](Random& r, std::span<glm::vec4> p) {
-                  p[0] = withW({r.uniform(), r.uniform(), r.uniform()}), p[1] = withW(r.direction()),
-                  p[2] = withW(r.direction()), p[3] = withW({r.uniform(0, 5), r.uniform(0, 5), r.uniform(0, 5)});
-                },
-            .reference = formula(1.0 / kPi, clamped),
-            .mistakes = {{lostPi, formula(1.0, clamped)},
-                         {lostCosine, formula(1.0 / kPi, [](double) { return 1.0; })},
-                         {noClamp, formula(1.0 / kPi, [](double x) { return x; })},
-                         {absolute, formula(1.0 / kPi, [](double x) { return std::abs(x); })},
-                         {{"pi-squared", "1 / pi is applied twice, or 1 / (2 pi) is used for 1 / pi"},
-                          formula(0.5 / kPi, clamped)},
-                         {{"lost-albedo", "the albedo is missing"},
-                          [=](Point p) {
-                            return glm::dvec4(three(p[3]) / kPi * std::max(0.0, glm::dot(three(p[1]), three(p[2]))),
-                                              0.0);
-                          }},
-                         {{"cosine-squared", "the cosine counts twice"},
-                          formula(1.0 / kPi, [](double x) { return x > 0.0 ? x * x : 0.0; })}}}) &&
+    c.againstReference(
+        "reflected light at points",
+        {.probe = 1,
+         .stride = 4,
+         .draw =
+             [](Random& r, std::span<glm::vec4> p) {
+               p[0] = withW({r.uniform(), r.uniform(), r.uniform()}), p[1] = withW(r.direction()),
+               p[2] = withW(r.direction()), p[3] = withW({r.uniform(0, 5), r.uniform(0, 5), r.uniform(0, 5)});
+             },
+         .reference = formula(1.0 / kPi, clamped),
+         .mistakes = {{lostPi, formula(1.0, clamped)},
+                      {lostCosine, formula(1.0 / kPi, [](double) { return 1.0; })},
+                      {noClamp, formula(1.0 / kPi, [](double x) { return x; })},
+                      {absolute, formula(1.0 / kPi, [](double x) { return std::abs(x); })},
+                      {{"pi-squared",
+                        "1 / pi is applied twice, or 1 / (2 pi) is "
+                        "used for 1 / pi"},
+                       formula(0.5 / kPi, clamped)},
+                      {{"lost-albedo", "the albedo is missing"},
+                       [=](Point p) {
+                         return glm::dvec4(three(p[3]) / kPi * std::max(0.0, glm::dot(three(p[1]), three(p[2]))), 0.0);
+                       }},
+                      {{"cosine-squared", "the cosine counts twice"},
+                       formula(1.0 / kPi, [](double x) { return x > 0.0 ? x * x : 0.0; })}}}) &&
         c.mean("furnace: radiance 1 all around gives the albedo",
                {.probe = 2, .inputs = {withW(n, albedo)}, .expected = albedo});
     Curve curve{"Error of the furnace estimate against samples",
@@ -125,18 +127,19 @@ struct FurnaceChecks {
     const auto of = [](double (*value)(double)) {
       return [=](Point p) { return glm::dvec4(value(glm::dot(three(p[0]), three(p[1])))); };
     };
-    c.twin("density at points",
-           {.probe = 4,
-            .stride = 2,
-            .draw = [](Random& r, std::span<glm::vec4> p) { p[0] = withW(r.direction()), p[1] = withW(r.direction()); },
-            .reference = of([](double x) { return std::max(0.0, x) / kPi; }),
-            .mistakes = {{lostPi, of([](double x) { return std::max(0.0, x); })},
-                         {noClamp, of([](double x) { return x / kPi; })},
-                         {absolute, of([](double x) { return std::abs(x) / kPi; })},
-                         {{"uniform-density", "that is the density of uniform directions, 1 / (2 pi)"},
-                          of([](double x) { return x > 0.0 ? 0.5 / kPi : 0.0; })},
-                         {{"uniform-density", "that is the density of uniform directions, 1 / (2 pi)"},
-                          of([](double) { return 0.5 / kPi; })}}}) &&
+    c.againstReference(
+        "density at points",
+        {.probe = 4,
+         .stride = 2,
+         .draw = [](Random& r, std::span<glm::vec4> p) { p[0] = withW(r.direction()), p[1] = withW(r.direction()); },
+         .reference = of([](double x) { return std::max(0.0, x) / kPi; }),
+         .mistakes = {{lostPi, of([](double x) { return std::max(0.0, x); })},
+                      {noClamp, of([](double x) { return x / kPi; })},
+                      {absolute, of([](double x) { return std::abs(x) / kPi; })},
+                      {{"uniform-density", "that is the density of uniform directions, 1 / (2 pi)"},
+                       of([](double x) { return x > 0.0 ? 0.5 / kPi : 0.0; })},
+                      {{"uniform-density", "that is the density of uniform directions, 1 / (2 pi)"},
+                       of([](double) { return 0.5 / kPi; })}}}) &&
         c.mean("the density's integral over the sphere is 1", {.probe = 5, .inputs = {withW(n)}, .expected = 1.0}) &&
         c.mean("furnace by your directions: no noise", {.probe = 6, .inputs = {withW(n, albedo)}, .expected = albedo});
   }
@@ -148,7 +151,7 @@ struct FurnaceChecks {
         return glm::dvec4(value(glm::dot(three(p[2]), glm::normalize(way)), glm::length(way)));
       };
     };
-    c.twin(
+    c.againstReference(
         "solid angle of a unit of area, at points",
         {.probe = 7,
          .stride = 3,
@@ -175,23 +178,24 @@ struct FurnaceChecks {
     const auto of = [](double (*value)(double e, double a, int n)) {
       return [=](Point p) { return glm::dvec4(value(p[0].x, p[0].y, static_cast<int>(p[0].z))); };
     };
-    c.twin("radiance after n bounces",
-           {.probe = 9,
-            .draw =
-                [](Random& r, std::span<glm::vec4> p) {
-                  p[0] = withW({r.uniform(0.1, 3.0), r.uniform(0.0, 0.99), std::floor(r.uniform(0.0, 30.0))});
-                },
-            .reference = of([](double e, double a, int n) { return e * (1.0 - std::pow(a, n + 1)) / (1.0 - a); }),
-            .mistakes = {{{"infinite-sum", "that is the sum over all bounces"},
-                          of([](double e, double a, int) { return e / (1.0 - a); })},
-                         {{"one-too-few", "one bounce is missing: light that was never reflected counts as bounce 0"},
-                          of([](double e, double a, int n) { return e * (1.0 - std::pow(a, n)) / (1.0 - a); })},
-                         {{"one-too-many", "one bounce too many"},
-                          of([](double e, double a, int n) { return e * (1.0 - std::pow(a, n + 2)) / (1.0 - a); })},
-                         {{"lost-emission", "the walls' own emission is missing: they are seen directly too"},
-                          of([](double e, double a, int n) { return e * (1.0 - std::pow(a, n + 1)) / (1.0 - a) - e; })},
-                         {{"last-bounce-alone", "that is the light of the last bounce alone: sum over all of them"},
-                          of([](double e, double a, int n) { return e * std::pow(a, n); })}}});
+    c.againstReference(
+        "radiance after n bounces",
+        {.probe = 9,
+         .draw =
+             [](Random& r, std::span<glm::vec4> p) {
+               p[0] = withW({r.uniform(0.1, 3.0), r.uniform(0.0, 0.99), std::floor(r.uniform(0.0, 30.0))});
+             },
+         .reference = of([](double e, double a, int n) { return e * (1.0 - std::pow(a, n + 1)) / (1.0 - a); }),
+         .mistakes = {{{"infinite-sum", "that is the sum over all bounces"},
+                       of([](double e, double a, int) { return e / (1.0 - a); })},
+                      {{"one-too-few", "one bounce is missing: light that was never reflected counts as bounce 0"},
+                       of([](double e, double a, int n) { return e * (1.0 - std::pow(a, n)) / (1.0 - a); })},
+                      {{"one-too-many", "one bounce too many"},
+                       of([](double e, double a, int n) { return e * (1.0 - std::pow(a, n + 2)) / (1.0 - a); })},
+                      {{"lost-emission", "the walls' own emission is missing: they are seen directly too"},
+                       of([](double e, double a, int n) { return e * (1.0 - std::pow(a, n + 1)) / (1.0 - a) - e; })},
+                      {{"last-bounce-alone", "that is the light of the last bounce alone: sum over all of them"},
+                       of([](double e, double a, int n) { return e * std::pow(a, n); })}}});
   }
   // Task 6: a floor under a square lamp, using tasks 1 and 4.
   void together() {

@@ -37,7 +37,7 @@ struct HarmonicsChecks {
   // Task 1: shBasis: bands 0 and 1.
   void shBasis() {
     const auto of = [](double y0, double y1) { return [=](Point p) { return joined(y0, y1 * glm::dvec3(p[0])); }; };
-    c.twin(
+    c.againstReference(
         "basis at points",
         {.probe = 1,
          .draw = [](Random& r, std::span<glm::vec4> p) { p[0] = inFloat(glm::dvec4(r.direction(), 0.0)); },
@@ -58,7 +58,7 @@ struct HarmonicsChecks {
   // Task 2: cosineLobe: the clamped cosine about a normal.
   void cosineLobe() {
     const auto of = [](double l0, double l1) { return [=](Point p) { return joined(l0, l1 * glm::dvec3(p[0])); }; };
-    c.twin(
+    c.againstReference(
         "lobe at points",
         {.probe = 3,
          .draw = [](Random& r, std::span<glm::vec4> p) { p[0] = inFloat(glm::dvec4(r.direction(), 0.0)); },
@@ -80,7 +80,7 @@ struct HarmonicsChecks {
     const auto of = [](double (*weight)(double l, double pdf)) {
       return [=](Point p) { return weight(p[1].x, p[1].y) * joined(kY0, kY1 * glm::dvec3(p[0])); };
     };
-    c.twin(
+    c.againstReference(
         "one sample",
         {.probe = 5,
          .stride = 2,
@@ -116,27 +116,28 @@ struct HarmonicsChecks {
     const auto of = [](double l0, double l1) {
       return [=](Point p) { return glm::dvec4(glm::dot(glm::dvec4(p[0]), joined(l0, l1 * glm::dvec3(p[1])))); };
     };
-    c.twin("irradiance at points",
-           {.probe = 7,
-            .stride = 2,
-            .draw =
-                [](Random& r, std::span<glm::vec4> p) {
-                  p[0] = inFloat(some(r)), p[1] = inFloat(glm::dvec4(r.direction(), 0.0));
-                },
-            .reference = of(kLobe0, kLobe1),
-            .mistakes = {{{"lobe-lost",
-                           "that is the radiance from n: irradiance is the product's integral, the dot product with "
-                           "the cosine's coefficients"},
-                          of(kY0, kY1)},
-                         {{"over-pi", "irradiance is not divided by pi; that comes with the BRDF"},
-                          of(kLobe0 / kPi, kLobe1 / kPi)},
-                         {{"band-1-factor", "band 1 is damped by 2 pi / 3, not pi"}, of(kPi * kY0, kPi * kY1)},
-                         {{"wrong-side", "the normal points the wrong way"}, of(kLobe0, -kLobe1)},
-                         {{"clamped", "keep negative results: a clamp here hides errors and is not linear"},
-                          [](Point p) {
-                            return glm::dvec4(
-                                std::max(0.0, glm::dot(glm::dvec4(p[0]), joined(kLobe0, kLobe1 * glm::dvec3(p[1])))));
-                          }}}}) &&
+    c.againstReference(
+        "irradiance at points",
+        {.probe = 7,
+         .stride = 2,
+         .draw =
+             [](Random& r, std::span<glm::vec4> p) {
+               p[0] = inFloat(some(r)), p[1] = inFloat(glm::dvec4(r.direction(), 0.0));
+             },
+         .reference = of(kLobe0, kLobe1),
+         .mistakes = {{{"lobe-lost",
+                        "that is the radiance from n: irradiance is the product's integral, the dot product with "
+                        "the cosine's coefficients"},
+                       of(kY0, kY1)},
+                      {{"over-pi", "irradiance is not divided by pi; that comes with the BRDF"},
+                       of(kLobe0 / kPi, kLobe1 / kPi)},
+                      {{"band-1-factor", "band 1 is damped by 2 pi / 3, not pi"}, of(kPi * kY0, kPi * kY1)},
+                      {{"wrong-side", "the normal points the wrong way"}, of(kLobe0, -kLobe1)},
+                      {{"clamped", "keep negative results: a clamp here hides errors and is not linear"},
+                       [](Point p) {
+                         return glm::dvec4(
+                             std::max(0.0, glm::dot(glm::dvec4(p[0]), joined(kLobe0, kLobe1 * glm::dvec3(p[1])))));
+                       }}}}) &&
         c.mean("irradiance in an environment, by your projection",
                {.probe = 8,
                 .inputs = with(glm::dvec4(normal, 0.0)),
@@ -153,19 +154,20 @@ struct HarmonicsChecks {
                              : glm::dvec4(k * v.x - s * v.y, s * v.x + k * v.y, v.z, v.w);
       };
     };
-    c.twin("rotation at points",
-           {.probe = 9,
-            .stride = 2,
-            .draw =
-                [](Random& r, std::span<glm::vec4> p) {
-                  p[0] = inFloat(some(r)), p[1] = glm::vec4(static_cast<float>(r.uniform(-3, 3)), 0, 0, 0);
-                },
-            .reference = of(1.0, 2),
-            .mistakes = {
-                {{"wrong-sense", "the rotation has the wrong sense: it should go from x towards y"}, of(-1.0, 2)},
-                {{"wrong-axis", "band 1 is a vector (x, y, z) behind band 0: z is the last component"}, of(1.0, 0)},
-                {{"band-0-turns", "band 0 is the same in all directions: it does not rotate"}, of(1.0, 1)},
-                {{"not-turned", "nothing turns"}, [](Point p) { return glm::dvec4(p[0]); }}}});
+    c.againstReference(
+        "rotation at points",
+        {.probe = 9,
+         .stride = 2,
+         .draw =
+             [](Random& r, std::span<glm::vec4> p) {
+               p[0] = inFloat(some(r)), p[1] = glm::vec4(static_cast<float>(r.uniform(-3, 3)), 0, 0, 0);
+             },
+         .reference = of(1.0, 2),
+         .mistakes = {
+             {{"wrong-sense", "the rotation has the wrong sense: it should go from x towards y"}, of(-1.0, 2)},
+             {{"wrong-axis", "band 1 is a vector (x, y, z) behind band 0: z is the last component"}, of(1.0, 0)},
+             {{"band-0-turns", "band 0 is the same in all directions: it does not rotate"}, of(1.0, 1)},
+             {{"not-turned", "nothing turns"}, [](Point p) { return glm::dvec4(p[0]); }}}});
   }
   // Task 6: a ball in an environment, using tasks 1 to 4.
   void together() {

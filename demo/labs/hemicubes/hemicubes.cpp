@@ -79,7 +79,7 @@ struct HemicubesChecks {
       return
           [=](Point p) { return glm::dvec4(p[0].z * value(double(p[0].x) * p[0].x + double(p[0].y) * p[0].y + 1.0)); };
     };
-    c.twin(
+    c.againstReference(
         "top at points",
         {.probe = 1,
          .draw = [](Random& r,
@@ -105,7 +105,7 @@ struct HemicubesChecks {
         return glm::dvec4(p[0].z * value(p[0].y, double(p[0].x) * p[0].x + double(p[0].y) * p[0].y + 1.0));
       };
     };
-    c.twin(
+    c.againstReference(
         "side at points",
         {.probe = 2,
          .draw = [](Random& r,
@@ -137,28 +137,29 @@ struct HemicubesChecks {
                           0.0);
       };
     };
-    c.twin("directions of pixels",
-           {.probe = 4,
-            .draw =
-                [](Random& r, std::span<glm::vec4> p) {
-                  const double n = 4.0 * std::floor(r.uniform(2, 40)), face = std::floor(r.uniform(0, 5));
-                  p[0] = four(face, std::floor(r.uniform(0, n)), std::floor(r.uniform(0, face > 0.5 ? n / 2.0 : n)), n);
-                },
-            .reference = of(0.5, false, true),
-            .mistakes = {
-                {{"pixel-centre-missed", "that is a pixel's corner: its centre is half a pixel further"},
-                 of(0.0, false, true)},
-                {{"not-unit", "the direction is not of length 1"}, of(0.5, false, false)},
-                {{"side-height", "a side has n by n / 2 pixels of the same size as the top's"}, of(0.5, true, true)},
-                {{"faces-exchanged", "faces are swapped: 1 is +x, 2 is -x, 3 is +y, 4 is -y"}, [](Point p) {
-                   const double n = p[0].w;
-                   const int f = static_cast<int>(p[0].x);
-                   return glm::dvec4(directionOf(f == 1   ? 2
-                                                 : f == 2 ? 1
-                                                          : f,
-                                                 2.0 * (p[0].y + 0.5) / n, 2.0 * (p[0].z + 0.5) / n),
-                                     0.0);
-                 }}}});
+    c.againstReference(
+        "directions of pixels",
+        {.probe = 4,
+         .draw =
+             [](Random& r, std::span<glm::vec4> p) {
+               const double n = 4.0 * std::floor(r.uniform(2, 40)), face = std::floor(r.uniform(0, 5));
+               p[0] = four(face, std::floor(r.uniform(0, n)), std::floor(r.uniform(0, face > 0.5 ? n / 2.0 : n)), n);
+             },
+         .reference = of(0.5, false, true),
+         .mistakes = {
+             {{"pixel-centre-missed", "that is a pixel's corner: its centre is half a pixel further"},
+              of(0.0, false, true)},
+             {{"not-unit", "the direction is not of length 1"}, of(0.5, false, false)},
+             {{"side-height", "a side has n by n / 2 pixels of the same size as the top's"}, of(0.5, true, true)},
+             {{"faces-exchanged", "faces are swapped: 1 is +x, 2 is -x, 3 is +y, 4 is -y"}, [](Point p) {
+                const double n = p[0].w;
+                const int f = static_cast<int>(p[0].x);
+                return glm::dvec4(directionOf(f == 1   ? 2
+                                              : f == 2 ? 1
+                                                       : f,
+                                              2.0 * (p[0].y + 0.5) / n, 2.0 * (p[0].z + 0.5) / n),
+                                  0.0);
+              }}}});
   }
   // Task 6, before tasks 4 and 5: form factors on the whole hemicube, by tasks 1 and 2.
   void together() {
@@ -185,7 +186,7 @@ struct HemicubesChecks {
       enclosure([&] { return r.uniform(); }, r.uniform(0.3, 0.9), p);
       p[5] = four(r.uniform(0, 3), r.uniform(0, 3), r.uniform(0, 3));
     };
-    c.twin(
+    c.againstReference(
         "one sweep",
         {.probe = 6,
          .stride = 6,
@@ -225,11 +226,12 @@ struct HemicubesChecks {
                })},
               {{"adds-up", "the new radiosity replaces the old, it is not added"},
                of([](Point p, glm::dvec3 b) { return b + swept(p, b) - glm::dvec3(p[0]); })}}}) &&
-        c.twin("two hundred sweeps: the solution", {.probe = 7,
-                                                    .stride = 6,
-                                                    .draw = draw,
-                                                    .reference = [](Point p) { return glm::dvec4(solved(p), 0.0); },
-                                                    .points = 256});
+        c.againstReference("two hundred sweeps: the solution",
+                           {.probe = 7,
+                            .stride = 6,
+                            .draw = draw,
+                            .reference = [](Point p) { return glm::dvec4(solved(p), 0.0); },
+                            .points = 256});
     // One enclosure derived from the seed: error against sweeps.
     std::vector<glm::vec4> box(7);
     int drawn = 0;
@@ -257,29 +259,30 @@ struct HemicubesChecks {
     const auto of = [](double (*value)(double change, double r)) {
       return [=](Point p) { return glm::dvec4(value(p[0].x, p[0].y)); };
     };
-    c.twin("bound at points",
-           {.probe = 8,
-            .draw = [](Random& r, std::span<glm::vec4> p) { p[0] = four(r.uniform(0.0, 0.1), r.uniform(0.1, 0.97)); },
-            .reference = of([](double d, double r) { return d * r / (1.0 - r); }),
-            .mistakes = {{{"change-is-no-error", "the last change is not the error: the changes to come add up"},
-                          of([](double d, double) { return d; })},
-                         {{"one-sweep-late",
-                           "that bounds the error before the sweep; the sweep itself is done: times the reflectance"},
-                          of([](double d, double r) { return d / (1.0 - r); })},
-                         {{"next-change-alone", "that is the next change alone: all that follow count"},
-                          of([](double d, double r) { return d * r; })},
-                         {{"inverted", "the bound grows with the reflectance"},
-                          of([](double d, double r) { return d * (1.0 - r) / r; })}}}) &&
-        c.twin("the reference lies within your bound", {.probe = 9,
-                                                        .stride = 6,
-                                                        .draw =
-                                                            [](Random& r, std::span<glm::vec4> p) {
-                                                              enclosure([&] { return r.uniform(); },
-                                                                        r.uniform(0.3, 0.95), p);
-                                                              p[5] = four(solved(p));
-                                                            },
-                                                        .reference = [](Point) { return glm::dvec4(1.0); },
-                                                        .points = 256});
+    c.againstReference(
+        "bound at points",
+        {.probe = 8,
+         .draw = [](Random& r, std::span<glm::vec4> p) { p[0] = four(r.uniform(0.0, 0.1), r.uniform(0.1, 0.97)); },
+         .reference = of([](double d, double r) { return d * r / (1.0 - r); }),
+         .mistakes = {{{"change-is-no-error", "the last change is not the error: the changes to come add up"},
+                       of([](double d, double) { return d; })},
+                      {{"one-sweep-late",
+                        "that bounds the error before the sweep; the sweep itself is done: times the reflectance"},
+                       of([](double d, double r) { return d / (1.0 - r); })},
+                      {{"next-change-alone", "that is the next change alone: all that follow count"},
+                       of([](double d, double r) { return d * r; })},
+                      {{"inverted", "the bound grows with the reflectance"},
+                       of([](double d, double r) { return d * (1.0 - r) / r; })}}}) &&
+        c.againstReference("the reference lies within your bound", {.probe = 9,
+                                                                    .stride = 6,
+                                                                    .draw =
+                                                                        [](Random& r, std::span<glm::vec4> p) {
+                                                                          enclosure([&] { return r.uniform(); },
+                                                                                    r.uniform(0.3, 0.95), p);
+                                                                          p[5] = four(solved(p));
+                                                                        },
+                                                                    .reference = [](Point) { return glm::dvec4(1.0); },
+                                                                    .points = 256});
   }
 
   void run() {

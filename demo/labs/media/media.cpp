@@ -48,23 +48,24 @@ struct MediaChecks {
     const auto of = [](double (*value)(double cosine, double g)) {
       return [=](Point p) { return glm::dvec4(value(p[0].x, p[0].y)); };
     };
-    c.twin("phase function at points",
-           {.probe = 1,
-            .draw = [](Random& r, std::span<glm::vec4> p) { p[0] = four(r.uniform(-1, 1), r.uniform(-0.9, 0.9)); },
-            .reference = of(phase),
-            .mistakes = {{{"g-negated", "g has the wrong sign: positive g scatters forward"},
-                          of([](double x, double h) { return phase(x, -h); })},
-                         {{"two-pi", "2 pi for 4 pi: the phase function integrates to 1 over the whole sphere"},
-                          of([](double x, double h) { return 2.0 * phase(x, h); })},
-                         {{"lost-four-pi", "1 / (4 pi) is missing"},
-                          of([](double x, double h) { return 4.0 * kPi * phase(x, h); })},
-                         {{"power", "the denominator has the power 3/2"}, of([](double x, double h) {
-                            return (1.0 - h * h) / (4.0 * kPi * (1.0 + h * h - 2.0 * h * x));
-                          })},
-                         {{"power", "the denominator has the power 3/2"}, of([](double x, double h) {
-                            return (1.0 - h * h) / (4.0 * kPi * std::sqrt(1.0 + h * h - 2.0 * h * x));
-                          })},
-                         {{"isotropic", "g is ignored"}, of([](double, double) { return 0.25 / kPi; })}}}) &&
+    c.againstReference(
+        "phase function at points",
+        {.probe = 1,
+         .draw = [](Random& r, std::span<glm::vec4> p) { p[0] = four(r.uniform(-1, 1), r.uniform(-0.9, 0.9)); },
+         .reference = of(phase),
+         .mistakes = {{{"g-negated", "g has the wrong sign: positive g scatters forward"},
+                       of([](double x, double h) { return phase(x, -h); })},
+                      {{"two-pi", "2 pi for 4 pi: the phase function integrates to 1 over the whole sphere"},
+                       of([](double x, double h) { return 2.0 * phase(x, h); })},
+                      {{"lost-four-pi", "1 / (4 pi) is missing"},
+                       of([](double x, double h) { return 4.0 * kPi * phase(x, h); })},
+                      {{"power", "the denominator has the power 3/2"}, of([](double x, double h) {
+                         return (1.0 - h * h) / (4.0 * kPi * (1.0 + h * h - 2.0 * h * x));
+                       })},
+                      {{"power", "the denominator has the power 3/2"}, of([](double x, double h) {
+                         return (1.0 - h * h) / (4.0 * kPi * std::sqrt(1.0 + h * h - 2.0 * h * x));
+                       })},
+                      {{"isotropic", "g is ignored"}, of([](double, double) { return 0.25 / kPi; })}}}) &&
         c.mean("its integral over the sphere is 1", {.probe = 2, .inputs = {four(g)}, .expected = 1.0});
   }
   // Task 2: sampleHenyeyGreenstein: cosines with that density.
@@ -132,16 +133,17 @@ struct MediaChecks {
                        shares(scattering)},
                       {{"extinction-inverted", "the mean distance is 1 / extinction"}, shares(1.0 / extinction)},
                       {{"extinction-lost", "the distance does not depend on the medium"}, shares(1.0)}}}) &&
-        c.twin("distance falls with extinction",
-               {.probe = 6,
-                .draw =
-                    [](Random& r, std::span<glm::vec4> p) {
-                      p[0] = four(r.uniform(0.1, 3), r.uniform(0.1, 3), r.uniform(0.05, 0.95));
-                    },
-                .reference = of([](double u, double s, double a) { return -std::log1p(-u) / (s + a); }),
-                .mistakes = {{{"other-inversion",
-                               "log(u) has the right distribution but runs out of [0,1) at u = 0: -log(1 - u)"},
-                              of([](double u, double s, double a) { return -std::log(u) / (s + a); })}}});
+        c.againstReference(
+            "distance falls with extinction",
+            {.probe = 6,
+             .draw =
+                 [](Random& r, std::span<glm::vec4> p) {
+                   p[0] = four(r.uniform(0.1, 3), r.uniform(0.1, 3), r.uniform(0.05, 0.95));
+                 },
+             .reference = of([](double u, double s, double a) { return -std::log1p(-u) / (s + a); }),
+             .mistakes = {
+                 {{"other-inversion", "log(u) has the right distribution but runs out of [0,1) at u = 0: -log(1 - u)"},
+                  of([](double u, double s, double a) { return -std::log(u) / (s + a); })}}});
     Curve curve{"Share of light that travels farther", "distance", "transmittance", {}, {}};
     const std::vector<glm::vec4> flights = c.run(5, std::vector<glm::vec4>{four(scattering, absorption)}, 0, 4096);
     for (double d = 0.125 / extinction; d < 5.0 / extinction; d *= 1.25) {
@@ -196,18 +198,19 @@ struct MediaChecks {
     const auto of = [](double (*value)(double t, double ml)) {
       return [=](Point p) { return glm::dvec4(value(p[0].x, p[0].y)); };
     };
-    c.twin("coefficient at points",
-           {.probe = 8,
-            .draw = [](Random& r, std::span<glm::vec4> p) { p[0] = four(r.uniform(0.01, 10), r.uniform(5, 2000)); },
-            .reference = of([](double t, double ml) { return t * 230.0 / ml; }),
-            .mistakes = {
-                {{"unit", "the tables are in 1e-2 / mm"}, of([](double t, double ml) { return t * 23000.0 / ml; })},
-                {{"diluted", "that is the diluted liquid: divide by its share of the tank"},
-                 of([](double t, double) { return t * 0.01; })},
-                {{"inverted", "the natural liquid is denser than the diluted one, not thinner"},
-                 of([](double t, double ml) { return t * 0.01 * ml / 23000.0; })},
-                {{"tank", "the share is liquid / tank: the 23 litres include the liquid"},
-                 of([](double t, double ml) { return t * 0.01 * (23000.0 + ml) / ml; })}}});
+    c.againstReference(
+        "coefficient at points",
+        {.probe = 8,
+         .draw = [](Random& r, std::span<glm::vec4> p) { p[0] = four(r.uniform(0.01, 10), r.uniform(5, 2000)); },
+         .reference = of([](double t, double ml) { return t * 230.0 / ml; }),
+         .mistakes = {
+             {{"unit", "the tables are in 1e-2 / mm"}, of([](double t, double ml) { return t * 23000.0 / ml; })},
+             {{"diluted", "that is the diluted liquid: divide by its share of the tank"},
+              of([](double t, double) { return t * 0.01; })},
+             {{"inverted", "the natural liquid is denser than the diluted one, not thinner"},
+              of([](double t, double ml) { return t * 0.01 * ml / 23000.0; })},
+             {{"tank", "the share is liquid / tank: the 23 litres include the liquid"},
+              of([](double t, double ml) { return t * 0.01 * (23000.0 + ml) / ml; })}}});
   }
   // Task 6: photons through slabs, using tasks 2 and 3.
   void together() {

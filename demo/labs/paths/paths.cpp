@@ -29,26 +29,27 @@ struct PathsChecks {
       return [=](Point p) { return glm::dvec4(value(p[0].x, p[0].y)); };
     };
     const Mistake swapped{"swapped", "the weights are swapped: a strategy counts where its own density is greater"};
-    c.twin("weight at points",
-           {.probe = 1,
-            .draw =
-                [](Random& r, std::span<glm::vec4> p) {
-                  p[0] = four(r.uniform(0.0, 3.0), r.uniform(0.0, 3.0));
-                  if (r.uniform() < 0.05) p[0] = four(0.0, 0.0);
-                },
-            .reference = of([](double a, double b) { return a > 0.0 ? a / (a + b) : 0.0; }),
-            .mistakes = {{{"double-counting", "both strategies have full weight: light is counted twice"},
-                          of([](double, double) { return 1.0; })},
-                         {{"double-counting", "both strategies have full weight: light is counted twice"},
-                          of([](double a, double) { return a > 0.0 ? 1.0 : 0.0; })},
-                         {swapped, of([](double a, double b) { return b > 0.0 ? b / (a + b) : 0.0; })},
-                         {{"half",
-                           "half each is unbiased, but keeps the noise of the worse strategy: weight by the densities"},
-                          of([](double, double) { return 0.5; })},
-                         {{"power-heuristic", "that is the power heuristic; the task asks for the balance heuristic"},
-                          of([](double a, double b) { return a > 0.0 ? a * a / (a * a + b * b) : 0.0; })},
-                         {{"maximum", "that is the maximum heuristic; the task asks for the balance heuristic"},
-                          of([](double a, double b) { return a > b ? 1.0 : 0.0; })}}}) &&
+    c.againstReference(
+        "weight at points",
+        {.probe = 1,
+         .draw =
+             [](Random& r, std::span<glm::vec4> p) {
+               p[0] = four(r.uniform(0.0, 3.0), r.uniform(0.0, 3.0));
+               if (r.uniform() < 0.05) p[0] = four(0.0, 0.0);
+             },
+         .reference = of([](double a, double b) { return a > 0.0 ? a / (a + b) : 0.0; }),
+         .mistakes = {{{"double-counting", "both strategies have full weight: light is counted twice"},
+                       of([](double, double) { return 1.0; })},
+                      {{"double-counting", "both strategies have full weight: light is counted twice"},
+                       of([](double a, double) { return a > 0.0 ? 1.0 : 0.0; })},
+                      {swapped, of([](double a, double b) { return b > 0.0 ? b / (a + b) : 0.0; })},
+                      {{"half",
+                        "half each is unbiased, but keeps the noise of the worse strategy: weight by the densities"},
+                       of([](double, double) { return 0.5; })},
+                      {{"power-heuristic", "that is the power heuristic; the task asks for the balance heuristic"},
+                       of([](double a, double b) { return a > 0.0 ? a * a / (a * a + b * b) : 0.0; })},
+                      {{"maximum", "that is the maximum heuristic; the task asks for the balance heuristic"},
+                       of([](double a, double b) { return a > b ? 1.0 : 0.0; })}}}) &&
         c.mean("the two weights make one", {.probe = 2, .expected = 1.0});
   }
   // Task 2: lampSample: next-event estimation.
@@ -61,33 +62,33 @@ struct PathsChecks {
       };
     };
 #define LIGHT [](double l, double a, double cx, double cy, double d, double pdf)
-    c.twin("lamp's part at points",
-           {.probe = 3,
-            .stride = 4,
-            .draw =
-                [](Random& r, std::span<glm::vec4> p) {
-                  p[0] = four(r.direction() * 0.5), p[1] = four(r.direction() * r.uniform(1.0, 4.0)),
-                  p[2] = four(r.direction()),
-                  p[3] = four(r.uniform(0.1, 5.0), r.uniform(0.05, 1.0), r.uniform(0.1, 3.0));
-                },
-            .reference = of(LIGHT { return l * a / kPi * cx * std::max(0.0, cy) / (d * d) / pdf; }),
-            .mistakes = {{{"lost-pi", "1 / pi of Lambert's BRDF is missing"},
-                          of(LIGHT { return l * a * cx * std::max(0.0, cy) / (d * d) / pdf; })},
-                         {{"no-area-to-solid-angle",
-                           "the lamp's cosine and 1 / d^2 are lost: an area is not a solid angle"},
-                          of(LIGHT { return l * a / kPi * cx / pdf + 0.0 * (cy + d); })},
-                         {{"lost-lamp-cosine", "the cosine at the lamp is missing"},
-                          of(LIGHT { return l * a / kPi * cx / (d * d) / pdf + 0.0 * cy; })},
-                         {{"lost-cosine", "the cosine at x is missing"},
-                          of(LIGHT { return l * a / kPi * std::max(0.0, cy) / (d * d) / pdf + 0.0 * cx; })},
-                         {{"distance-not-squared", "the distance must be squared"},
-                          of(LIGHT { return l * a / kPi * cx * std::max(0.0, cy) / d / pdf; })},
-                         {{"lost-density", "the density is missing: value / density"},
-                          of(LIGHT { return l * a / kPi * cx * std::max(0.0, cy) / (d * d) + 0.0 * pdf; })},
-                         {{"wrong-side", "the lamp's back emits light: its cosine has the wrong sign"},
-                          of(LIGHT { return l * a / kPi * cx * std::max(0.0, -cy) / (d * d) / pdf; })},
-                         {{"no-clamp", "the lamp's back gives negative light"},
-                          of(LIGHT { return l * a / kPi * cx * cy / (d * d) / pdf; })}}}) &&
+    c.againstReference("lamp's part at points",
+                       {.probe = 3,
+                        .stride = 4,
+                        .draw =
+                            [](Random& r, std::span<glm::vec4> p) {
+                              p[0] = four(r.direction() * 0.5), p[1] = four(r.direction() * r.uniform(1.0, 4.0)),
+                              p[2] = four(r.direction()),
+                              p[3] = four(r.uniform(0.1, 5.0), r.uniform(0.05, 1.0), r.uniform(0.1, 3.0));
+                            },
+                        .reference = of(LIGHT { return l * a / kPi * cx * std::max(0.0, cy) / (d * d) / pdf; }),
+                        .mistakes = {{{"lost-pi", "1 / pi of Lambert's BRDF is missing"},
+                                      of(LIGHT { return l * a * cx * std::max(0.0, cy) / (d * d) / pdf; })},
+                                     {{"no-area-to-solid-angle",
+                                       "the lamp's cosine and 1 / d^2 are lost: an area is not a solid angle"},
+                                      of(LIGHT { return l * a / kPi * cx / pdf + 0.0 * (cy + d); })},
+                                     {{"lost-lamp-cosine", "the cosine at the lamp is missing"},
+                                      of(LIGHT { return l * a / kPi * cx / (d * d) / pdf + 0.0 * cy; })},
+                                     {{"lost-cosine", "the cosine at x is missing"},
+                                      of(LIGHT { return l * a / kPi * std::max(0.0, cy) / (d * d) / pdf + 0.0 * cx; })},
+                                     {{"distance-not-squared", "the distance must be squared"},
+                                      of(LIGHT { return l * a / kPi * cx * std::max(0.0, cy) / d / pdf; })},
+                                     {{"lost-density", "the density is missing: value / density"},
+                                      of(LIGHT { return l * a / kPi * cx * std::max(0.0, cy) / (d * d) + 0.0 * pdf; })},
+                                     {{"wrong-side", "the lamp's back emits light: its cosine has the wrong sign"},
+                                      of(LIGHT { return l * a / kPi * cx * std::max(0.0, -cy) / (d * d) / pdf; })},
+                                     {{"no-clamp", "the lamp's back gives negative light"},
+                                      of(LIGHT { return l * a / kPi * cx * cy / (d * d) / pdf; })}}}) &&
         c.mean("light of a square lamp",
                {.probe = 4, .inputs = {four(side, height, albedo), four(away)}, .expected = light});
 #undef LIGHT
@@ -99,28 +100,28 @@ struct PathsChecks {
         return (p[0].z < p[0].y) != exchanged ? glm::dvec4(1.0, after(p[0].x, p[0].y), 0.0, 0.0) : glm::dvec4(0.0);
       };
     };
-    c.twin("roulette at points",
-           {.probe = 6,
-            .draw =
-                [](Random& r, std::span<glm::vec4> p) {
-                  do p[0] = four(r.uniform(0.1, 2.0), r.uniform(0.05, 0.95), r.uniform());
-                  while (std::abs(p[0].y - p[0].z) < 1e-3f);
-                },
-            .reference = of(false, [](double t, double s) { return t / s; }),
-            .mistakes = {{{"roulette-undivided",
-                           "survivors are not divided by the probability of survival: the picture darkens"},
-                          of(false, [](double t, double) { return t; })},
-                         {{"roulette-multiplied",
-                           "survivors are multiplied by the probability; they must be divided by it"},
-                          of(false, [](double t, double s) { return t * s; })},
-                         {{"roulette-exchanged", "the path ends with probability `survival`: u < survival continues"},
-                          of(true, [](double t, double s) { return t / s; })},
-                         {{"roulette-exchanged", "the path ends with probability `survival`: u < survival continues"},
-                          of(true, [](double t, double s) { return t / (1.0 - s); })},
-                         {{"roulette-wrong-probability", "divide by the probability of continuing, not of ending"},
-                          of(false, [](double t, double s) { return t / (1.0 - s); })},
-                         {{"never-ends", "the path always continues"},
-                          [](Point p) { return glm::dvec4(1.0, p[0].x / p[0].y, 0.0, 0.0); }}}}) &&
+    c.againstReference(
+        "roulette at points",
+        {.probe = 6,
+         .draw =
+             [](Random& r, std::span<glm::vec4> p) {
+               do p[0] = four(r.uniform(0.1, 2.0), r.uniform(0.05, 0.95), r.uniform());
+               while (std::abs(p[0].y - p[0].z) < 1e-3f);
+             },
+         .reference = of(false, [](double t, double s) { return t / s; }),
+         .mistakes =
+             {{{"roulette-undivided", "survivors are not divided by the probability of survival: the picture darkens"},
+               of(false, [](double t, double) { return t; })},
+              {{"roulette-multiplied", "survivors are multiplied by the probability; they must be divided by it"},
+               of(false, [](double t, double s) { return t * s; })},
+              {{"roulette-exchanged", "the path ends with probability `survival`: u < survival continues"},
+               of(true, [](double t, double s) { return t / s; })},
+              {{"roulette-exchanged", "the path ends with probability `survival`: u < survival continues"},
+               of(true, [](double t, double s) { return t / (1.0 - s); })},
+              {{"roulette-wrong-probability", "divide by the probability of continuing, not of ending"},
+               of(false, [](double t, double s) { return t / (1.0 - s); })},
+              {{"never-ends", "the path always continues"},
+               [](Point p) { return glm::dvec4(1.0, p[0].x / p[0].y, 0.0, 0.0); }}}}) &&
         c.mean("throughput is kept on average", {.probe = 7, .inputs = {four(1.5, survival)}, .expected = 1.5});
   }
   // Task 4: furnacePath: one path in a closed box.
@@ -176,26 +177,27 @@ struct PathsChecks {
     const auto of = [](double (*value)(double mean, double meanSquare, double n)) {
       return [=](Point p) { return glm::dvec4(value(double(p[0].x) / p[0].z, double(p[0].y) / p[0].z, p[0].z)); };
     };
-    c.twin("standard error at points",
-           {.probe = 11,
-            .draw =
-                [](Random& r, std::span<glm::vec4> p) {
-                  const double n = std::floor(r.uniform(2.0, 100.0)), mean = r.uniform(0.1, 2.0),
-                               deviation = r.uniform(0.5, 2.0) * mean;
-                  p[0] = four(n * mean, n * (mean * mean + deviation * deviation), n);
-                },
-            .reference = of([](double m, double q, double n) { return std::sqrt((q - m * m) / (n - 1.0)); }),
-            .mistakes = {
-                {{"deviation-of-a-sample", "that is the deviation of one sample; the mean of n has 1 / sqrt(n) of it"},
-                 of([](double m, double q, double n) { return std::sqrt((q - m * m) * n / (n - 1.0)); })},
-                {{"deviation-of-a-sample", "that is the deviation of one sample; the mean of n has 1 / sqrt(n) of it"},
-                 of([](double m, double q, double) { return std::sqrt(q - m * m); })},
-                {{"variance", "that is the variance of the mean: take its root"},
-                 of([](double m, double q, double n) { return (q - m * m) / (n - 1.0); })},
-                {{"n-for-n-less-one", "n samples lose one to their own mean: n - 1"},
-                 of([](double m, double q, double n) { return std::sqrt((q - m * m) / n); })},
-                {{"mean-not-subtracted", "the square of the mean is not subtracted"},
-                 of([](double, double q, double n) { return std::sqrt(q / (n - 1.0)); })}}});
+    c.againstReference(
+        "standard error at points",
+        {.probe = 11,
+         .draw =
+             [](Random& r, std::span<glm::vec4> p) {
+               const double n = std::floor(r.uniform(2.0, 100.0)), mean = r.uniform(0.1, 2.0),
+                            deviation = r.uniform(0.5, 2.0) * mean;
+               p[0] = four(n * mean, n * (mean * mean + deviation * deviation), n);
+             },
+         .reference = of([](double m, double q, double n) { return std::sqrt((q - m * m) / (n - 1.0)); }),
+         .mistakes = {
+             {{"deviation-of-a-sample", "that is the deviation of one sample; the mean of n has 1 / sqrt(n) of it"},
+              of([](double m, double q, double n) { return std::sqrt((q - m * m) * n / (n - 1.0)); })},
+             {{"deviation-of-a-sample", "that is the deviation of one sample; the mean of n has 1 / sqrt(n) of it"},
+              of([](double m, double q, double) { return std::sqrt(q - m * m); })},
+             {{"variance", "that is the variance of the mean: take its root"},
+              of([](double m, double q, double n) { return (q - m * m) / (n - 1.0); })},
+             {{"n-for-n-less-one", "n samples lose one to their own mean: n - 1"},
+              of([](double m, double q, double n) { return std::sqrt((q - m * m) / n); })},
+             {{"mean-not-subtracted", "the square of the mean is not subtracted"},
+              of([](double, double q, double n) { return std::sqrt(q / (n - 1.0)); })}}});
   }
   // Task 6: the floor close below a lamp, using tasks 1, 2 and 5.
   void together() {

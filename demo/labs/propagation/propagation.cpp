@@ -93,7 +93,7 @@ struct PropagationChecks {
       };
     };
     const auto down = [](double x) { return std::floor(x); };
-    c.twin(
+    c.againstReference(
         "cells of lights",
         {.probe = 1,
          .stride = 3,
@@ -126,20 +126,21 @@ struct PropagationChecks {
     const auto of = [](double l0, double l1) {
       return [=](Point p) { return double(p[0].w) * joined(l0, l1 * glm::dvec3(p[0])); };
     };
-    c.twin("injected light",
-           {.probe = 2,
-            .draw = [](Random& r, std::span<glm::vec4> p) { p[0] = four(r.direction(), r.uniform(0.1, 5)); },
-            .reference = of(kLobe0 / kPi, kLobe1 / kPi),
-            .mistakes = {
-                {{"lost-pi", "1 / pi is missing: the intensity is flux / pi * cos, so that it integrates to the flux"},
-                 of(kLobe0, kLobe1)},
-                {{"four-pi", "flux / (4 pi) is a point in free space; a Lambertian surface has flux / pi * cos"},
-                 of(0.25 * kLobe0 / kPi, 0.25 * kLobe1 / kPi)},
-                {{"delta", "light leaves a surface in a cosine lobe, not in one direction"}, of(kY0, kY1)},
-                {{"wrong-side", "the light leaves on the wrong side"}, of(kLobe0 / kPi, -kLobe1 / kPi)},
-                {{"isotropic", "the normal is ignored"}, of(kLobe0 / kPi, 0.0)},
-                {{"lost-flux", "the flux is missing"},
-                 [](Point p) { return joined(kLobe0, kLobe1 * glm::dvec3(p[0])) / kPi; }}}});
+    c.againstReference(
+        "injected light",
+        {.probe = 2,
+         .draw = [](Random& r, std::span<glm::vec4> p) { p[0] = four(r.direction(), r.uniform(0.1, 5)); },
+         .reference = of(kLobe0 / kPi, kLobe1 / kPi),
+         .mistakes = {
+             {{"lost-pi", "1 / pi is missing: the intensity is flux / pi * cos, so that it integrates to the flux"},
+              of(kLobe0, kLobe1)},
+             {{"four-pi", "flux / (4 pi) is a point in free space; a Lambertian surface has flux / pi * cos"},
+              of(0.25 * kLobe0 / kPi, 0.25 * kLobe1 / kPi)},
+             {{"delta", "light leaves a surface in a cosine lobe, not in one direction"}, of(kY0, kY1)},
+             {{"wrong-side", "the light leaves on the wrong side"}, of(kLobe0 / kPi, -kLobe1 / kPi)},
+             {{"isotropic", "the normal is ignored"}, of(kLobe0 / kPi, 0.0)},
+             {{"lost-flux", "the flux is missing"},
+              [](Point p) { return joined(kLobe0, kLobe1 * glm::dvec3(p[0])) / kPi; }}}});
   }
   // Task 3: fluxInto: through a face.
   void fluxInto() {
@@ -149,29 +150,28 @@ struct PropagationChecks {
         return glm::dvec4((clamped ? std::max(0.0, value) : value) * (solid ? double(p[1].w) : 1.0));
       };
     };
-    c.twin("flux at points",
-           {.probe = 3,
-            .stride = 2,
-            .draw =
-                [](Random& r, std::span<glm::vec4> p) {
-                  p[0] = glm::vec4(some(r)), p[1] = four(r.direction(), r.uniform(0.1, 1.0));
-                },
-            .reference = of(1.0, true, true),
-            .mistakes = {{{"no-clamp", "an intensity within two bands may be negative; a flux may not"},
-                          of(1.0, false, true)},
-                         {{"lost-solid-angle", "the solid angle is missing"}, of(1.0, true, false)},
-                         {{"wrong-side", "the direction has the wrong sign"}, of(-1.0, true, true)},
-                         {{"absolute", "a negative intensity counts as zero, not as positive"},
-                          [](Point p) {
-                            return glm::dvec4(
-                                std::abs(glm::dot(glm::dvec4(p[0]), joined(kY0, kY1 * glm::dvec3(p[1])))) * p[1].w);
-                          }},
-                         {{"lobe-for-direction", "an intensity is evaluated in a direction: shBasis, not cosineLobe"},
-                          [](Point p) {
-                            return glm::dvec4(
-                                std::max(0.0, glm::dot(glm::dvec4(p[0]), joined(kLobe0, kLobe1 * glm::dvec3(p[1])))) *
-                                p[1].w);
-                          }}}}) &&
+    c.againstReference(
+        "flux at points",
+        {.probe = 3,
+         .stride = 2,
+         .draw =
+             [](Random& r, std::span<glm::vec4> p) {
+               p[0] = glm::vec4(some(r)), p[1] = four(r.direction(), r.uniform(0.1, 1.0));
+             },
+         .reference = of(1.0, true, true),
+         .mistakes =
+             {{{"no-clamp", "an intensity within two bands may be negative; a flux may not"}, of(1.0, false, true)},
+              {{"lost-solid-angle", "the solid angle is missing"}, of(1.0, true, false)},
+              {{"wrong-side", "the direction has the wrong sign"}, of(-1.0, true, true)},
+              {{"absolute", "a negative intensity counts as zero, not as positive"},
+               [](Point p) {
+                 return glm::dvec4(std::abs(glm::dot(glm::dvec4(p[0]), joined(kY0, kY1 * glm::dvec3(p[1])))) * p[1].w);
+               }},
+              {{"lobe-for-direction", "an intensity is evaluated in a direction: shBasis, not cosineLobe"},
+               [](Point p) {
+                 return glm::dvec4(
+                     std::max(0.0, glm::dot(glm::dvec4(p[0]), joined(kLobe0, kLobe1 * glm::dvec3(p[1])))) * p[1].w);
+               }}}}) &&
         // 2 pi times the integral of 1/4 + m/2 over the cosines m above -1/2, over pi: 9/8.
         c.mean("the flux that a clamped lobe sends into the whole sphere is 9/8 of the light's",
                {.probe = 8,
@@ -185,7 +185,7 @@ struct PropagationChecks {
       return
           [=](Point p) { return kernel.step(glm::dvec4(p[0]), glm::dvec3(p[1]), glm::dvec3(p[2]), glm::dvec3(p[3])); };
     };
-    c.twin(
+    c.againstReference(
         "one neighbour",
         {.probe = 4,
          .stride = 4,
@@ -215,14 +215,15 @@ struct PropagationChecks {
               {{"four-pi", "4 pi for pi: three quarters of the light are lost in each step"},
                of({.overPi = 0.25 / kPi})}},
          .tolerance = 5e-6}) &&
-        c.twin(fmt::format("six neighbours: band 0 is kept, band 1 times {:.8g}", kept),
-               {.probe = 5,
-                .draw =
-                    [](Random& r, std::span<glm::vec4> p) {
-                      p[0] = glm::vec4(joined(r.uniform(0.8, 1.0), 0.25 * r.direction()));
-                    },
-                .reference = [this](Point p) { return glm::dvec4(1.0, kept, kept, kept) * glm::dvec4(p[0]); },
-                .tolerance = 1e-5});
+        c.againstReference(
+            fmt::format("six neighbours: band 0 is kept, band 1 times {:.8g}", kept),
+            {.probe = 5,
+             .draw =
+                 [](Random& r, std::span<glm::vec4> p) {
+                   p[0] = glm::vec4(joined(r.uniform(0.8, 1.0), 0.25 * r.direction()));
+                 },
+             .reference = [this](Point p) { return glm::dvec4(1.0, kept, kept, kept) * glm::dvec4(p[0]); },
+             .tolerance = 1e-5});
     // The grid loses direction: band 1 of uniform light, step by step.
     Curve curve{"What is left of band 1 after steps", "steps", "share", {}, {}};
     std::vector<glm::vec4> light{glm::vec4(1.0f, 0.25f, 0.0f, 0.0f)};
@@ -241,24 +242,25 @@ struct PropagationChecks {
       };
     };
     // Nearly uniform light: nothing is clamped, so the frame's rotation about the normal does not matter.
-    c.twin("irradiance at points",
-           {.probe = 6,
-            .stride = 2,
-            .draw =
-                [](Random& r, std::span<glm::vec4> p) {
-                  p[0] = glm::vec4(joined(r.uniform(0.8, 1.5), 0.3 * r.direction())),
-                  p[1] = four(r.direction(), r.uniform(0.3, 2.0));
-                },
-            .reference = of({}, 1.0, true),
-            .mistakes = {{{"wrong-side", "light that arrives travels against the normal: -n"}, of({}, -1.0, true)},
-                         {{"area-lost", "flux over area: divide by cell * cell"}, of({}, 1.0, false)},
-                         {{"front-alone", "the four sides are missing"}, of({.sides = false}, 1.0, true)},
-                         {{"cell-once", "a face has the area cell * cell"}, [](Point p) {
-                            return glm::dvec4(
-                                Kernel{}.irradiance(glm::dvec4(p[0]), glm::dvec3(p[1]), std::sqrt(double(p[1].w))));
-                          }}}});
+    c.againstReference(
+        "irradiance at points",
+        {.probe = 6,
+         .stride = 2,
+         .draw =
+             [](Random& r, std::span<glm::vec4> p) {
+               p[0] = glm::vec4(joined(r.uniform(0.8, 1.5), 0.3 * r.direction())),
+               p[1] = four(r.direction(), r.uniform(0.3, 2.0));
+             },
+         .reference = of({}, 1.0, true),
+         .mistakes = {{{"wrong-side", "light that arrives travels against the normal: -n"}, of({}, -1.0, true)},
+                      {{"area-lost", "flux over area: divide by cell * cell"}, of({}, 1.0, false)},
+                      {{"front-alone", "the four sides are missing"}, of({.sides = false}, 1.0, true)},
+                      {{"cell-once", "a face has the area cell * cell"}, [](Point p) {
+                         return glm::dvec4(
+                             Kernel{}.irradiance(glm::dvec4(p[0]), glm::dvec3(p[1]), std::sqrt(double(p[1].w))));
+                       }}}});
   }
-  // Task 6: two lights in a grid, against the twin.
+  // Task 6: two lights in a grid, against the reference implementation.
   void together() {
     // Two lights on the floor of a grid, eight steps summed: a slice through them.
     std::vector<glm::dvec4> grid(static_cast<std::size_t>(kGrid.x * kGrid.y * kGrid.z), glm::dvec4(0.0));
@@ -284,7 +286,7 @@ struct PropagationChecks {
     c.picture("slice",
               {.reference = [&](glm::ivec2 p) { return glm::dvec3(value(sum, p)); },
                .caption = "A slice through a grid of 12 by 8 by 8 cells: two lights on the floor after eight steps, "
-                          "band 0; the reference is the twin in double precision"},
+                          "band 0; the reference is the reference implementation in double precision"},
               pixels);
   }
 

@@ -36,35 +36,38 @@ struct ShadowsChecks {
         return glm::dvec4(x > 0.0 ? value(x, p[0].w) : 0.0);
       };
     };
-    c.twin("bias at points",
-           {.probe = 1,
-            .stride = 2,
-            .draw =
-                [](Random& r, std::span<glm::vec4> p) {
-                  for (double x = 0.0; std::abs(x) < 0.05 || std::abs(x) > 0.99;
-                       x = glm::dot(glm::dvec3(p[0]), glm::dvec3(p[1])))
-                    p[0] = four(r.direction(), r.uniform(0.01, 0.2)), p[1] = four(r.direction());
-                },
-            .reference = of([](double x, double t) { return 0.5 * t * std::sqrt(1.0 - x * x) / x; }),
-            .mistakes = {
-                {{"sine-for-tangent", "depth changes with the tangent of the angle, not with its sine"},
-                 of([](double x, double t) { return 0.5 * t * std::sqrt(1.0 - x * x); })},
-                {{"cosine-for-tangent", "depth changes with the tangent of the angle to the light"},
-                 of([](double x, double t) { return 0.5 * t * x; })},
-                {{"cotangent", "the tangent is upside down: a surface that faces the light needs no bias"},
-                 of([](double x, double t) { return 0.5 * t * x / std::sqrt(1.0 - x * x); })},
-                {{"whole-texel", "half a texel, not a whole one"},
-                 of([](double x, double t) { return t * std::sqrt(1.0 - x * x) / x; })},
-                {{"constant-bias", "the bias does not follow the slope"}, of([](double, double t) { return 0.5 * t; })},
-                {{"back-faces", "a surface that faces away needs none"},
-                 [](Point p) {
-                   const double x = glm::dot(glm::dvec3(p[0]), glm::dvec3(p[1]));
-                   return glm::dvec4(0.5 * p[0].w * std::sqrt(1.0 - x * x) / x);
-                 }},
-                {{"back-faces", "a surface that faces away needs none"}, [](Point p) {
-                   const double x = glm::dot(glm::dvec3(p[0]), glm::dvec3(p[1]));
-                   return glm::dvec4(0.5 * p[0].w * std::sqrt(1.0 - x * x) / std::abs(x));
-                 }}}});
+    c.againstReference(
+        "bias at points",
+        {.probe = 1,
+         .stride = 2,
+         .draw =
+             [](Random& r, std::span<glm::vec4> p) {
+               for (double x = 0.0; std::abs(x) < 0.05 || std::abs(x) > 0.99;
+                    x = glm::dot(glm::dvec3(p[0]), glm::dvec3(p[1])))
+                 p[0] = four(r.direction(), r.uniform(0.01, 0.2)), p[1] = four(r.direction());
+             },
+         .reference = of([](double x, double t) { return 0.5 * t * std::sqrt(1.0 - x * x) / x; }),
+         .mistakes = {
+             {{"sine-for-tangent", "depth changes with the tangent of the angle, not with its sine"},
+              of([](double x, double t) { return 0.5 * t * std::sqrt(1.0 - x * x); })},
+             {{"cosine-for-tangent", "depth changes with the tangent of the angle to the light"},
+              of([](double x, double t) { return 0.5 * t * x; })},
+             {{"cotangent",
+               "the tangent is upside down: a surface that faces the light needs "
+               "no bias"},
+              of([](double x, double t) { return 0.5 * t * x / std::sqrt(1.0 - x * x); })},
+             {{"whole-texel", "half a texel, not a whole one"},
+              of([](double x, double t) { return t * std::sqrt(1.0 - x * x) / x; })},
+             {{"constant-bias", "the bias does not follow the slope"}, of([](double, double t) { return 0.5 * t; })},
+             {{"back-faces", "a surface that faces away needs none"},
+              [](Point p) {
+                const double x = glm::dot(glm::dvec3(p[0]), glm::dvec3(p[1]));
+                return glm::dvec4(0.5 * p[0].w * std::sqrt(1.0 - x * x) / x);
+              }},
+             {{"back-faces", "a surface that faces away needs none"}, [](Point p) {
+                const double x = glm::dot(glm::dvec3(p[0]), glm::dvec3(p[1]));
+                return glm::dvec4(0.5 * p[0].w * std::sqrt(1.0 - x * x) / std::abs(x));
+              }}}});
   }
   // Task 2: filteredShadow: compared, then filtered.
   void filteredShadow() {
@@ -79,66 +82,68 @@ struct ShadowsChecks {
         return glm::dvec4(exchanged ? mixed(lit, p[1].w, p[1].z) : mixed(lit, p[1].z, p[1].w));
       };
     };
-    c.twin("shadow at points",
-           {.probe = 2,
-            .stride = 2,
-            // No comparison is decided by rounding, with or without the bias.
-            .draw =
-                [](Random& r, std::span<glm::vec4> p) {
-                  bool near = true;
-                  while (near) {
-                    p[1] = four(r.uniform(0.3, 0.7), r.uniform(0.02, 0.15), r.uniform(), r.uniform());
-                    p[0] = four(r.uniform(0.2, 0.8), r.uniform(0.2, 0.8), r.uniform(0.2, 0.8), r.uniform(0.2, 0.8));
-                    near = false;
-                    for (int k = 0; k < 4; ++k)
-                      for (const float b : {-1.0f, 0.0f, 1.0f})
-                        near = near || std::abs(p[0][k] - p[1].x + b * p[1].y) < 1e-4f;
-                  }
-                },
-            .reference = of(1.0, false, false),
-            .mistakes = {
-                {{"filter-then-compare", "depths must not be averaged: compare first, then filter [Reeves1987]"},
-                 [=](Point p) {
-                   return glm::dvec4(double(p[1].x) - double(p[1].y) <= mixed(glm::dvec4(p[0]), p[1].z, p[1].w) ? 1.0
-                                                                                                                : 0.0);
-                 }},
-                {{"bias-sign", "the bias has the wrong sign: it moves the surface towards the light"},
-                 of(-1.0, false, false)},
-                {{"bias-lost", "the bias is missing"}, of(0.0, false, false)},
-                {{"inverted", "that is the share in shadow: 1 is lit"}, of(1.0, true, false)},
-                {{"axes-exchanged", "x and y of f are swapped"}, of(1.0, false, true)},
-                {{"nearest", "the four comparisons are not filtered by f"},
-                 [=](Point p) { return glm::dvec4(double(p[1].x) - double(p[1].y) <= double(p[0].x) ? 1.0 : 0.0); }},
-                {{"average", "the four comparisons are averaged; they must be weighted by f"}, [=](Point p) {
-                   double s = 0;
-                   for (int k = 0; k < 4; ++k) s += double(p[1].x) - double(p[1].y) <= double(p[0][k]) ? 0.25 : 0.0;
-                   return glm::dvec4(s);
-                 }}}});
+    c.againstReference(
+        "shadow at points",
+        {.probe = 2,
+         .stride = 2,
+         // No comparison is decided by rounding, with or without the bias.
+         .draw =
+             [](Random& r, std::span<glm::vec4> p) {
+               bool near = true;
+               while (near) {
+                 p[1] = four(r.uniform(0.3, 0.7), r.uniform(0.02, 0.15), r.uniform(), r.uniform());
+                 p[0] = four(r.uniform(0.2, 0.8), r.uniform(0.2, 0.8), r.uniform(0.2, 0.8), r.uniform(0.2, 0.8));
+                 near = false;
+                 for (int k = 0; k < 4; ++k)
+                   for (const float b : {-1.0f, 0.0f, 1.0f})
+                     near = near || std::abs(p[0][k] - p[1].x + b * p[1].y) < 1e-4f;
+               }
+             },
+         .reference = of(1.0, false, false),
+         .mistakes = {
+             {{"filter-then-compare", "depths must not be averaged: compare first, then filter [Reeves1987]"},
+              [=](Point p) {
+                return glm::dvec4(double(p[1].x) - double(p[1].y) <= mixed(glm::dvec4(p[0]), p[1].z, p[1].w) ? 1.0
+                                                                                                             : 0.0);
+              }},
+             {{"bias-sign", "the bias has the wrong sign: it moves the surface towards the light"},
+              of(-1.0, false, false)},
+             {{"bias-lost", "the bias is missing"}, of(0.0, false, false)},
+             {{"inverted", "that is the share in shadow: 1 is lit"}, of(1.0, true, false)},
+             {{"axes-exchanged", "x and y of f are swapped"}, of(1.0, false, true)},
+             {{"nearest", "the four comparisons are not filtered by f"},
+              [=](Point p) { return glm::dvec4(double(p[1].x) - double(p[1].y) <= double(p[0].x) ? 1.0 : 0.0); }},
+             {{"average", "the four comparisons are averaged; they must be weighted by f"}, [=](Point p) {
+                double s = 0;
+                for (int k = 0; k < 4; ++k) s += double(p[1].x) - double(p[1].y) <= double(p[0][k]) ? 0.25 : 0.0;
+                return glm::dvec4(s);
+              }}}});
   }
   // Task 3: texelFlux: the flux that a texel of the map reflects.
   void texelFlux() {
     const auto of = [](double (*value)(double a, double e, double t, double x)) {
       return [=](Point p) { return glm::dvec4(value(p[0].x, p[0].y, p[0].z, p[0].w)); };
     };
-    c.twin("flux at points",
-           {.probe = 3,
-            .draw =
-                [](Random& r, std::span<glm::vec4> p) {
-                  p[0] = four(r.uniform(0.1, 1), r.uniform(0.1, 5), r.uniform(0.001, 0.1), r.uniform(0.1, 1));
-                },
-            .reference = of([](double a, double e, double t, double) { return a * e * t; }),
-            .mistakes = {
-                {{"double-cosine",
-                  "the cosine is in the texel's area already: the surface is larger by 1 / cos and lit less by cos"},
-                 of([](double a, double e, double t, double x) { return a * e * t * x; })},
-                {{"divided-cosine", "the surface is larger by 1 / cos, but lit less by cos: neither is left"},
-                 of([](double a, double e, double t, double x) { return a * e * t / x; })},
-                {{"over-pi", "flux is over all directions: 1 / pi belongs to radiance"},
-                 of([](double a, double e, double t, double) { return a * e * t / kPi; })},
-                {{"area-lost", "the texel's area is missing: brightness would follow the map's resolution"},
-                 of([](double a, double e, double, double) { return a * e; })},
-                {{"lost-albedo", "the albedo is missing"},
-                 of([](double, double e, double t, double) { return e * t; })}}});
+    c.againstReference(
+        "flux at points",
+        {.probe = 3,
+         .draw =
+             [](Random& r, std::span<glm::vec4> p) {
+               p[0] = four(r.uniform(0.1, 1), r.uniform(0.1, 5), r.uniform(0.001, 0.1), r.uniform(0.1, 1));
+             },
+         .reference = of([](double a, double e, double t, double) { return a * e * t; }),
+         .mistakes = {
+             {{"double-cosine",
+               "the cosine is in the texel's area already: the surface is larger by 1 / cos and lit less by cos"},
+              of([](double a, double e, double t, double x) { return a * e * t * x; })},
+             {{"divided-cosine", "the surface is larger by 1 / cos, but lit less by cos: neither is left"},
+              of([](double a, double e, double t, double x) { return a * e * t / x; })},
+             {{"over-pi", "flux is over all directions: 1 / pi belongs to radiance"},
+              of([](double a, double e, double t, double) { return a * e * t / kPi; })},
+             {{"area-lost", "the texel's area is missing: brightness would follow the map's resolution"},
+              of([](double a, double e, double, double) { return a * e; })},
+             {{"lost-albedo", "the albedo is missing"},
+              of([](double, double e, double t, double) { return e * t; })}}});
   }
   // Task 4: texelLight: light from a texel to a point.
   void texelLight() {
@@ -150,36 +155,37 @@ struct ShadowsChecks {
       };
     };
 #define PART [](double cp, double cx, double d)
-    c.twin("light of one texel",
-           {.probe = 4,
-            .stride = 4,
-            .draw =
-                [](Random& r, std::span<glm::vec4> p) {
-                  p[0] = four(r.direction() * r.uniform(1.0, 3.0), r.uniform(0.1, 2)), p[1] = four(r.direction()),
-                  p[2] = four(r.direction() * 0.4), p[3] = four(r.direction());
-                },
-            .reference = of(PART { return std::max(0.0, cp) * std::max(0.0, cx) / (kPi * d * d); }),
-            .mistakes = {{{"lost-pi", "1 / pi is missing: the intensity is flux / pi * cos"},
-                          of(PART { return std::max(0.0, cp) * std::max(0.0, cx) / (d * d); })},
-                         {{"power-of-distance",
-                           "with vectors that are not of length 1 the distance counts to the fourth power: two of it "
-                           "for the two cosines"},
-                          of(PART { return std::max(0.0, cp) * std::max(0.0, cx) / kPi + 0.0 * d; })},
-                         {{"power-of-distance",
-                           "the distance counts twice too often: with unit vectors 1 / d^2, without 1 / d^4"},
-                          of(PART { return std::max(0.0, cp) * std::max(0.0, cx) / (kPi * d * d * d * d); })},
-                         {{"lost-cosine", "a cosine is missing: one at the texel, one at x"},
-                          of(PART { return std::max(0.0, cp) / (kPi * d * d) + 0.0 * cx; })},
-                         {{"lost-cosine", "a cosine is missing: one at the texel, one at x"},
-                          of(PART { return std::max(0.0, cx) / (kPi * d * d) + 0.0 * cp; })},
-                         {{"wrong-side", "the wrong side is lit: x is lit where its normal looks towards the texel"},
-                          of(PART { return std::max(0.0, cp) * std::max(0.0, -cx) / (kPi * d * d); })},
-                         {{"wrong-side", "the texel's back emits light"},
-                          of(PART { return std::max(0.0, -cp) * std::max(0.0, cx) / (kPi * d * d); })},
-                         {{"no-clamp", "two negative cosines make light: clamp each by itself"},
-                          of(PART { return cp * cx / (kPi * d * d); })},
-                         {{"no-clamp", "two negative cosines make light: clamp each by itself"},
-                          of(PART { return std::max(0.0, cp * cx) / (kPi * d * d); })}}});
+    c.againstReference(
+        "light of one texel",
+        {.probe = 4,
+         .stride = 4,
+         .draw =
+             [](Random& r, std::span<glm::vec4> p) {
+               p[0] = four(r.direction() * r.uniform(1.0, 3.0), r.uniform(0.1, 2)), p[1] = four(r.direction()),
+               p[2] = four(r.direction() * 0.4), p[3] = four(r.direction());
+             },
+         .reference = of(PART { return std::max(0.0, cp) * std::max(0.0, cx) / (kPi * d * d); }),
+         .mistakes = {
+             {{"lost-pi", "1 / pi is missing: the intensity is flux / pi * cos"},
+              of(PART { return std::max(0.0, cp) * std::max(0.0, cx) / (d * d); })},
+             {{"power-of-distance",
+               "with vectors that are not of length 1 the distance counts to the fourth power: two of it "
+               "for the two cosines"},
+              of(PART { return std::max(0.0, cp) * std::max(0.0, cx) / kPi + 0.0 * d; })},
+             {{"power-of-distance", "the distance counts twice too often: with unit vectors 1 / d^2, without 1 / d^4"},
+              of(PART { return std::max(0.0, cp) * std::max(0.0, cx) / (kPi * d * d * d * d); })},
+             {{"lost-cosine", "a cosine is missing: one at the texel, one at x"},
+              of(PART { return std::max(0.0, cp) / (kPi * d * d) + 0.0 * cx; })},
+             {{"lost-cosine", "a cosine is missing: one at the texel, one at x"},
+              of(PART { return std::max(0.0, cx) / (kPi * d * d) + 0.0 * cp; })},
+             {{"wrong-side", "the wrong side is lit: x is lit where its normal looks towards the texel"},
+              of(PART { return std::max(0.0, cp) * std::max(0.0, -cx) / (kPi * d * d); })},
+             {{"wrong-side", "the texel's back emits light"},
+              of(PART { return std::max(0.0, -cp) * std::max(0.0, cx) / (kPi * d * d); })},
+             {{"no-clamp", "two negative cosines make light: clamp each by itself"},
+              of(PART { return cp * cx / (kPi * d * d); })},
+             {{"no-clamp", "two negative cosines make light: clamp each by itself"},
+              of(PART { return std::max(0.0, cp * cx) / (kPi * d * d); })}}});
 #undef PART
   }
   // Task 5: discSample: points of a disc.
@@ -191,24 +197,25 @@ struct ShadowsChecks {
       };
     };
     const double radius = c.fresh(0.5, 1.5);
-    c.twin("samples of the disc",
-           {.probe = 5,
-            .draw = [](Random& r, std::span<glm::vec4> p) { p[0] = four(r.uniform(), r.uniform(), r.uniform(0.1, 2)); },
-            .reference = of([](double xi, double r) { return 2.0 * kPi * r * r * xi; }),
-            .mistakes = {{{"published-weight",
-                           "xi^2 is the published weight, which is too small beside the middle: the density of the "
-                           "samples falls with 1 / xi alone"},
-                          of([](double xi, double r) { return 2.0 * kPi * r * r * xi * xi; })},
-                         {{"published-weight",
-                           "xi^2 is the published weight, which is too small beside the middle: the density of the "
-                           "samples falls with 1 / xi alone"},
-                          of([](double xi, double r) { return 3.0 * kPi * r * r * xi * xi; })},
-                         {{"weight-lost", "the samples are denser in the middle: the weight must follow the density"},
-                          of([](double, double r) { return kPi * r * r; })},
-                         {{"density-for-weight", "the weight is one over the density"},
-                          of([](double xi, double r) { return 1.0 / (2.0 * kPi * r * r * xi); })},
-                         {{"radius-lost", "the weight is an area: radius squared"},
-                          of([](double xi, double) { return 2.0 * kPi * xi; })}}}) &&
+    c.againstReference(
+        "samples of the disc",
+        {.probe = 5,
+         .draw = [](Random& r, std::span<glm::vec4> p) { p[0] = four(r.uniform(), r.uniform(), r.uniform(0.1, 2)); },
+         .reference = of([](double xi, double r) { return 2.0 * kPi * r * r * xi; }),
+         .mistakes = {{{"published-weight",
+                        "xi^2 is the published weight, which is too small beside the middle: the density of the "
+                        "samples falls with 1 / xi alone"},
+                       of([](double xi, double r) { return 2.0 * kPi * r * r * xi * xi; })},
+                      {{"published-weight",
+                        "xi^2 is the published weight, which is too small beside the middle: the density of the "
+                        "samples falls with 1 / xi alone"},
+                       of([](double xi, double r) { return 3.0 * kPi * r * r * xi * xi; })},
+                      {{"weight-lost", "the samples are denser in the middle: the weight must follow the density"},
+                       of([](double, double r) { return kPi * r * r; })},
+                      {{"density-for-weight", "the weight is one over the density"},
+                       of([](double xi, double r) { return 1.0 / (2.0 * kPi * r * r * xi); })},
+                      {{"radius-lost", "the weight is an area: radius squared"},
+                       of([](double xi, double) { return 2.0 * kPi * xi; })}}}) &&
         c.mean("an integral over the disc", {.probe = 6,
                                              .inputs = {four(radius)},
                                              .expected = kPi * radius * radius + 0.25 * kPi * std::pow(radius, 4.0)});

@@ -13,14 +13,15 @@ static void check(Checks& c) {
   const double radius = c.yours("radius", 0.5, 3.0);
   c.answer("area", kPi * radius * radius, 0.005, {{circumference, 2.0 * kPi * radius}});
   c.figure("area", kPi * radius * radius);
-  // A function compared with its twin in double precision, with the results of typical mistakes.
+  // A function compared with its reference implementation in double precision, with the results of typical mistakes.
   if (c.task(1))
-    c.twin("areas",
-           {.probe = 1,
-            .draw = [](Random& r, std::span<glm::vec4> p) { p[0].x = static_cast<float>(r.uniform(0.1, 5.0)); },
-            .reference = [](Point p) { return glm::dvec4(kPi * p[0].x * p[0].x); },
-            .mistakes = {{circumference, [](Point p) { return glm::dvec4(2.0 * kPi * p[0].x); }},
-                         {{"not-squared", "square the radius"}, [](Point p) { return glm::dvec4(kPi * p[0].x); }}}});
+    c.againstReference(
+        "areas",
+        {.probe = 1,
+         .draw = [](Random& r, std::span<glm::vec4> p) { p[0].x = static_cast<float>(r.uniform(0.1, 5.0)); },
+         .reference = [](Point p) { return glm::dvec4(kPi * p[0].x * p[0].x); },
+         .mistakes = {{circumference, [](Point p) { return glm::dvec4(2.0 * kPi * p[0].x); }},
+                      {{"not-squared", "square the radius"}, [](Point p) { return glm::dvec4(kPi * p[0].x); }}}});
   // Samples compared with the probabilities of bins: eight rings of equal area; 8 is outside.
   std::vector<double> crowded;
   for (int k = 0; k < 8; ++k) crowded.push_back(std::sqrt((k + 1) / 8.0) - std::sqrt(k / 8.0));

@@ -30,7 +30,7 @@ class Ambient final : public FrameTechnique {
 
   std::string surfaceShader() const override { return "ambient/surface.frag"; }
   void bindForShading() const override { constants_.bindUniform(1); }
-  void addShares(const AskedPixel&, PixelAnswer& answer) override {
+  void addShares(const InspectedPixel&, PixelInspection& answer) override {
     answer.add("ambient", "the same everywhere", answer.surface->albedo / kPi * static_cast<double>(irradiance_.x),
                {answer.surface->position});
   }

@@ -1,4 +1,4 @@
-// What lit a pixel of the last frame: Renderer::ask.
+// What lit a pixel of the last frame: Renderer::inspect.
 #include "render/renderer.hpp"
 
 #include "gl/pass.hpp"
@@ -10,16 +10,16 @@ namespace lucerna {
 namespace {
 
 glm::dvec3 texelAt(const gl::Texture& texture, glm::ivec2 fromBelow) {
-  const gl::Texture one("asked pixel", texture.format(), glm::ivec2(1));
+  const gl::Texture one("inspected pixel", texture.format(), glm::ivec2(1));
   gl::copyTexels(texture, fromBelow, one, {0, 0}, {1, 1});
   return glm::dvec3(glm::vec3(one.readRgba().front()));
 }
 
 }  // namespace
 
-AskedTerms Renderer::drawAsked(gl::ProgramLibrary& programs, const FrameView& view, glm::ivec2 fromBelow) {
-  AskedTerms terms;
-  const SurfacePrograms asked = surfacePrograms(programs, true);
+InspectedTerms Renderer::drawInspected(gl::ProgramLibrary& programs, const FrameView& view, glm::ivec2 fromBelow) {
+  InspectedTerms terms;
+  const SurfacePrograms inspected = surfacePrograms(programs, true);
   bindFrameConstants(view);
   bindForShading();
   terms.bind();
@@ -28,51 +28,52 @@ AskedTerms Renderer::drawAsked(gl::ProgramLibrary& programs, const FrameView& vi
     state.depth = gl::Depth::equalReadOnly;
     state.cull = side.cull;
     state.polygonOffset = side.polygonOffset;
-    const gl::RasterPass pass("asked pixel", radianceTarget_, state);
+    const gl::RasterPass pass("inspected pixel", radianceTarget_, state);
     pass.restrictTo(fromBelow, {1, 1});
-    for (const gl::Program* program : {asked.opaque, asked.masked})
-      if (program) program->set("askedPixel", fromBelow);
-    gpuScene_->draw(asked, view.drawn());
+    for (const gl::Program* program : {inspected.opaque, inspected.masked})
+      if (program) program->set("inspectedPixel", fromBelow);
+    gpuScene_->draw(inspected, view.drawn());
     gl::memoryBarrier(gl::Barrier::storage);  // both sides write the terms
   }
   terms.read();
   return terms;
 }
 
-PixelAnswer Renderer::ask(gl::ProgramLibrary& programs, const Camera& camera, glm::ivec2 pixel) {
-  if (picture_) return picture_->ask(camera, pixel);
+PixelInspection Renderer::inspect(gl::ProgramLibrary& programs, const Camera& camera, glm::ivec2 pixel) {
+  if (picture_) return picture_->inspect(camera, pixel);
   const glm::ivec2 fromBelow(pixel.x, settings_.size.y - 1 - pixel.y);
-  PixelAnswer answer;
+  PixelInspection answer;
   answer.pixel = pixel;
   answer.technique = settings_.technique;
   answer.radiance = texelAt(radiance_, fromBelow);
   const FrameView view = viewOf(camera, camera);
-  const AskedTerms terms = drawAsked(programs, view, fromBelow);
-  if (terms.fourth(ASKED_POSITION) != 1.0f) {  // no surface, or a patch's back
+  const InspectedTerms terms = drawInspected(programs, view, fromBelow);
+  if (terms.fourth(INSPECTED_POSITION) != 1.0f) {  // no surface, or a patch's back
     answer.add("seen directly", "what lies behind the scene", answer.radiance);
     return answer;
   }
-  const glm::dvec3 position = glm::dvec3(terms[ASKED_POSITION]) + origin_;
-  answer.surface = PixelAnswer::Surface{position, glm::dvec3(terms[ASKED_NORMAL]), glm::dvec3(terms[ASKED_ALBEDO])};
-  answer.add("emission", "the surface itself", glm::dvec3(terms[ASKED_EMISSION]), {position});
+  const glm::dvec3 position = glm::dvec3(terms[INSPECTED_POSITION]) + origin_;
+  answer.surface =
+      PixelInspection::Surface{position, glm::dvec3(terms[INSPECTED_NORMAL]), glm::dvec3(terms[INSPECTED_ALBEDO])};
+  answer.add("emission", "the surface itself", glm::dvec3(terms[INSPECTED_EMISSION]), {position});
   if (!geometry_) addDirectShares(terms, answer);
   if (technique_) technique_->addShares({timer_, view, terms, fromBelow}, answer);
   return answer;
 }
 
-void Renderer::addDirectShares(const AskedTerms& terms, PixelAnswer& answer) {
+void Renderer::addDirectShares(const InspectedTerms& terms, PixelInspection& answer) {
   const glm::dvec3 position = answer.surface->position;
   const Scene& scene = gpuScene_->scene();
   const double reach = glm::length(scene.bounds.extent());
   if (scene.sun)
-    answer.add("direct", "sun", glm::dvec3(terms[ASKED_SUN]), {position, position - reach * scene.sun->direction});
+    answer.add("direct", "sun", glm::dvec3(terms[INSPECTED_SUN]), {position, position - reach * scene.sun->direction});
   const auto lamps = [&](const char* kind, const std::vector<LightViews>& lights, std::size_t first) {
     for (std::size_t i = 0; i < lights.size() && localLights_; ++i)
       answer.add("direct", fmt::format("{} {}", kind, lights[i].index + 1), glm::dvec3(terms[first + i]),
                  {position, lights[i].position + origin_});
   };
-  lamps("spot", spots_, ASKED_SPOTS);
-  lamps("point", points_, ASKED_POINTS);
+  lamps("spot", spots_, INSPECTED_SPOTS);
+  lamps("point", points_, INSPECTED_POINTS);
 }
 
 }  // namespace lucerna

@@ -1,4 +1,4 @@
-#include "pathtracer/ask_paths.hpp"
+#include "pathtracer/inspect_paths.hpp"
 
 #include <fmt/format.h>
 
@@ -30,13 +30,13 @@ std::vector<std::string> namesOfLamps(const Scene& scene) {
   return names;
 }
 
-PixelShare shareOf(const Scene& scene, const std::vector<std::string>& lamps, const PathTracer::AskedLight& light) {
+PixelShare shareOf(const Scene& scene, const std::vector<std::string>& lamps, const PathTracer::InspectedLight& light) {
   PixelShare share;
   switch (light.kind) {
     case PATH_LIGHT_TRIANGLE: share.name = nameOfTriangle(scene, light.number); break;
     case PATH_LIGHT_ENVIRONMENT: share.name = "sky"; break;
-    case PATH_ASKED_MEDIUM: share.name = "a medium that shines"; break;
-    case PATH_ASKED_BACKGROUND: share.name = "background"; break;
+    case PATH_INSPECTED_MEDIUM: share.name = "a medium that shines"; break;
+    case PATH_INSPECTED_BACKGROUND: share.name = "background"; break;
     default: share.name = light.number < lamps.size() ? lamps[light.number] : "a lamp";
   }
   constexpr std::uint32_t kMostApart = 8;  // light in media is scattered hundreds of times
@@ -52,12 +52,13 @@ PixelShare shareOf(const Scene& scene, const std::vector<std::string>& lamps, co
 
 }  // namespace
 
-PixelAnswer askPaths(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Camera& camera,
-                     PathTracer::Settings settings, std::uint32_t samples, glm::ivec2 pixel) {
-  settings.askedPixel = glm::ivec2(pixel.x, settings.size.y - 1 - pixel.y);
+PixelInspection inspectPaths(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
+                             const Camera& camera, PathTracer::Settings settings, std::uint32_t samples,
+                             glm::ivec2 pixel) {
+  settings.inspectedPixel = glm::ivec2(pixel.x, settings.size.y - 1 - pixel.y);
   PathTracer tracer(context, programs, scene, settings);
   tracer.setCamera(camera);
-  PixelAnswer answer;
+  PixelInspection answer;
   answer.pixel = pixel;
   answer.technique = "path";
   answer.samples = samples;
@@ -69,7 +70,7 @@ PixelAnswer askPaths(const gl::Context& context, gl::ProgramLibrary& programs, c
   constexpr std::uint32_t kStep = 1024;
   for (std::uint32_t done = 0; done < samples; done = tracer.samples()) {
     tracer.record(std::min(samples, done + kStep));
-    for (const PathTracer::AskedLight& light : tracer.takeAsked()) {
+    for (const PathTracer::InspectedLight& light : tracer.takeInspected()) {
       ofSample.try_emplace(light.sample, 0.0).first->second += glm::dvec3(light.radiance);
       answer.shares.push_back(shareOf(scene, lamps, light));
       answer.shares.back().radiance = each * glm::dvec3(light.radiance);

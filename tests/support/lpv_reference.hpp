@@ -1,5 +1,5 @@
-// The double-precision CPU twin of the light-propagation-volume pipeline (no GL): VPL injection, geometry volume,
-// propagation, accumulation, lookup and the camera-following grid.
+// The double-precision CPU reference implementation of the light-propagation-volume pipeline (no GL): VPL injection,
+// geometry volume, propagation, accumulation, lookup and the camera-following grid.
 //
 // It is derived from the formulas, never from the shaders, so that the two can be held against each other. Sources:
 // [Kaplanyan2010] for the scheme; [Kirsch2010] for its factors (VPL intensity Phi/pi, face flux Omega * I without
@@ -23,7 +23,7 @@
 #include <span>
 #include <vector>
 
-namespace lucerna::twin {
+namespace lucerna::reference {
 
 // ---- spherical harmonics, bands 0 and 1 --------------------------------------------------------------------------
 
@@ -158,8 +158,8 @@ enum class SideDirections {
 
 /// The kernel; the defaults are the corrected one, every other value is a deviation.
 struct KernelOptions {
-  double frontSolidAngle = twin::frontSolidAngle();
-  double sideSolidAngle = twin::sideSolidAngle();
+  double frontSolidAngle = reference::frontSolidAngle();
+  double sideSolidAngle = reference::sideSolidAngle();
   SideDirections sideDirections = SideDirections::exact;
   double lobeBand1 = kLobeBand1;  ///< of the reprojected lobe
   double gain = 1.0;  ///< factor on the reprojected flux
@@ -332,4 +332,4 @@ Plate tiltedPlate(const glm::dvec3& centre, double sizeU, double sizeV, double t
 /// texels already), area = A_texel / cos.
 std::vector<Vpl> plateVpls(const Plate& plate, const OrthographicRsm& rsm);
 
-}  // namespace lucerna::twin
+}  // namespace lucerna::reference

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace lucerna::twin {
+namespace lucerna::reference {
 
 /// Share of the hemisphere about `normal` at `point` that a polygon (either sense) fills, cosine-weighted; what lies
 /// below the horizon is cut off.
@@ -26,4 +26,4 @@ double areaToArea(const Rectangle& from, const Rectangle& to, int order = 4);
 /// The walls of a unit cube in n x n squares each, floor, ceiling, back, front, left, right, fronts inwards.
 std::vector<Rectangle> cubeSquares(int n);
 
-}  // namespace lucerna::twin
+}  // namespace lucerna::reference

@@ -1,4 +1,4 @@
-#include "support/rsm_twin.hpp"
+#include "support/rsm_reference.hpp"
 
 #include "base/angles.hpp"
 
@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-namespace lucerna::twin {
+namespace lucerna::reference {
 
 glm::dvec2 RsmMap::project(const glm::dvec3& point) const {
   return {glm::dot(point - corner, right) / width, glm::dot(point - corner, up) / height};
@@ -106,4 +106,4 @@ Gathered gather(const RsmMap& map, std::span<const glm::vec4> pattern, const glm
   return result;
 }
 
-}  // namespace lucerna::twin
+}  // namespace lucerna::reference

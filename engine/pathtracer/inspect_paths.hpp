@@ -4,13 +4,14 @@
 #include "gl/context.hpp"
 #include "gl/program.hpp"
 #include "pathtracer/path_tracer.hpp"
-#include "frame/pixel_answer.hpp"
+#include "frame/pixel_inspection.hpp"
 
 namespace lucerna {
 
 /// Retraces the first `samples` paths of the pixel (counted from the top left), with the random numbers they have in a
 /// picture with these settings: their sum is the picture's pixel.
-PixelAnswer askPaths(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Camera& camera,
-                     PathTracer::Settings settings, std::uint32_t samples, glm::ivec2 pixel);
+PixelInspection inspectPaths(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
+                             const Camera& camera, PathTracer::Settings settings, std::uint32_t samples,
+                             glm::ivec2 pixel);
 
 }  // namespace lucerna

@@ -1,9 +1,9 @@
-#include "support/media_twin.hpp"
+#include "support/media_reference.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace lucerna::twin {
+namespace lucerna::reference {
 
 using Real = long double;
 
@@ -128,4 +128,4 @@ SlabResult walkSlab(double albedo, double opticalDepth, double g, double ior, do
   return {r, t, std::sqrt(r * (1.0 - r) / photons), std::sqrt(t * (1.0 - t) / photons)};
 }
 
-}  // namespace lucerna::twin
+}  // namespace lucerna::reference

@@ -1,5 +1,5 @@
-// The double-precision CPU twin of the gather from a reflective shadow map (no GL): the irradiance that a texel's
-// surfel sends to a point, the sum over all texels, and the sampled estimate of it.
+// The double-precision CPU reference implementation of the gather from a reflective shadow map (no GL): the irradiance
+// that a texel's surfel sends to a point, the sum over all texels, and the sampled estimate of it.
 //
 // Derived from the formulas, never from the shaders. Sources: [Dachsbacher2005] for the gather; Lambert's polygon
 // formula for the form factor of a surfel. Units: W, scene units; irradiance in W per square scene unit.
@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-namespace lucerna::twin {
+namespace lucerna::reference {
 
 /// A map of parallel light.
 struct RsmMap {
@@ -66,4 +66,4 @@ struct Gathered {
 Gathered gather(const RsmMap& map, std::span<const glm::vec4> pattern, const glm::dvec3& position,
                 const glm::dvec3& normal, double rotation, const GatherOptions& options);
 
-}  // namespace lucerna::twin
+}  // namespace lucerna::reference

@@ -1,10 +1,10 @@
-// lucerna bench needs [SCENE]...: the features that a scene does not need, and what leaving them out saves, measured
+// lucerna bench features [SCENE]...: the features that a scene does not need, and what leaving them out saves, measured
 // against the same picture with every feature forced on.
 #include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/statistics.hpp"
 #include "bench/bench.hpp"
-#include "bench/needs_bench.hpp"
+#include "bench/features_bench.hpp"
 #include "gl/draw.hpp"
 #include "lpv/settings.hpp"
 #include "measure/neutral.hpp"
@@ -44,17 +44,17 @@ Scene withEverything(const Scene& scene, const RenderSettings& settings) {
   Scene full = scene;
   // A lamp, however dark, adds the surfaces that it sees to the geometry volume, where it is therefore not neutral.
   const bool lampsBlock = settings.technique == "lpv" && settings.of<LpvSettings>().blocking;
-  for (const std::string& need : measure::neutralNeeds())
+  for (const std::string& need : measure::neutralFeatures())
     if (!(lampsBlock && (need == "spotLights" || need == "pointLights"))) measure::addNeutral(full, need);
   return full;
 }
 
-NeedsResult measureNeeds(const gl::Context& context, const Scene& scene, const Camera& camera, RenderSettings settings,
-                         int frames) {
+FeaturesResult measureFeatures(const gl::Context& context, const Scene& scene, const Camera& camera,
+                               RenderSettings settings, int frames) {
   settings.fullFloatTarget = true;
   settings.reuse = false;  // measure each frame's full cost
   const Scene full = withEverything(scene, settings);
-  NeedsResult result;
+  FeaturesResult result;
   // Separate libraries: each compiles what it needs and finds nothing compiled already.
   gl::ProgramLibrary leanPrograms, fullPrograms;
   Renderer lean(context, leanPrograms, scene, settings), complete(context, fullPrograms, full, settings);
@@ -82,7 +82,7 @@ NeedsResult measureNeeds(const gl::Context& context, const Scene& scene, const C
   return result;
 }
 
-nlohmann::ordered_json needsJson(const NeedsResult& r) {
+nlohmann::ordered_json featuresJson(const FeaturesResult& r) {
   return {{"scene", r.scene},
           {"technique", r.technique},
           {"left_out", r.leftOut},
@@ -98,7 +98,7 @@ nlohmann::ordered_json needsJson(const NeedsResult& r) {
           {"max_radiance", r.maxRadiance}};
 }
 
-std::string needsText(const NeedsResult& r) {
+std::string featuresText(const FeaturesResult& r) {
   std::string names;
   for (const std::string& name : r.leftOut) names += (names.empty() ? "" : ", ") + name;
   const auto line = [](const char* what, double with, double without, const char* unit) {
@@ -118,7 +118,7 @@ std::string needsText(const NeedsResult& r) {
 
 namespace {
 
-struct NeedsOptions {
+struct FeaturesOptions {
   CommonOptions common;
   PictureOptions picture;
   std::vector<std::string> scenes;
@@ -126,7 +126,7 @@ struct NeedsOptions {
   int frames = 5;
 };
 
-int runNeeds(NeedsOptions options) {
+int runFeatures(FeaturesOptions options) {
   options.common.apply();
   options.picture.readSettingsFile();
   const RenderSettings settings = options.picture.parse();
@@ -138,11 +138,11 @@ int runNeeds(NeedsOptions options) {
   nlohmann::ordered_json results = nlohmann::ordered_json::array();
   for (const std::string& file : options.scenes) {
     const Scene scene = loadScene(file);
-    const bench::NeedsResult result =
-        bench::measureNeeds(context, scene, chooseCamera(scene, options.camera), settings, options.frames);
+    const bench::FeaturesResult result =
+        bench::measureFeatures(context, scene, chooseCamera(scene, options.camera), settings, options.frames);
     if (interrupted()) return exitCode();
-    if (!options.common.quiet) fmt::print("{}", bench::needsText(result));
-    results.push_back(bench::needsJson(result));
+    if (!options.common.quiet) fmt::print("{}", bench::featuresText(result));
+    results.push_back(bench::featuresJson(result));
   }
   nlohmann::ordered_json json = results.size() == 1 ? results[0] : nlohmann::ordered_json{{"scenes", results}};
   json["renderer"] = context.capabilities().renderer;
@@ -153,15 +153,15 @@ int runNeeds(NeedsOptions options) {
 
 }  // namespace
 
-Work addBenchNeeds(Command app) {
-  auto options = std::make_shared<NeedsOptions>();
+Work addBenchFeatures(Command app) {
+  auto options = std::make_shared<FeaturesOptions>();
   options->picture.size = "320x180";
   app.addOption("SCENE", options->scenes, "scene files (default: the atrium)");
   app.addOption("--camera", options->camera, "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");
   app.addOption("--frames", options->frames, "pictures of each kind, in turn").showDefault().range(1, 10000);
   options->picture.declare(app);
   options->common.declare(app);
-  return [options] { return runNeeds(*options); };
+  return [options] { return runFeatures(*options); };
 }
 
 }  // namespace lucerna::demo

@@ -1,8 +1,8 @@
 // What lit a pixel: the answer to a query about one pixel of a frame (no GL calls).
 //
-// Renderer::ask draws that pixel again with shaders that record each term (flag ASKED), and asks the technique's own
-// lookup for the texels, cells, records or patches it used. Frames without a query compile, allocate and compute none
-// of this.
+// Renderer::inspect draws that pixel again with shaders that record each term (flag INSPECTED), and asks the
+// technique's own lookup for the texels, cells, records or patches it used. Frames without a query compile, allocate
+// and compute none of this.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -26,7 +26,7 @@ struct PixelShare {
   std::size_t count = 1;  ///< number of combined sources
 };
 
-struct PixelAnswer {
+struct PixelInspection {
   struct Surface {
     glm::dvec3 position{0.0}, normal{0.0}, albedo{0.0};
   };

@@ -2,9 +2,9 @@
 layout(local_size_x = 1) in;
 #include "lib/clamped_int.glsl"
 #include "lpv/lookup.glsl"
-#include "forward/asked_parts.glsl"
-uniform vec3 askedPosition;
-uniform vec3 askedNormal;
+#include "forward/inspected_parts.glsl"
+uniform vec3 inspectedPosition;
+uniform vec3 inspectedNormal;
 
 void main() {
   int cells = grids.shape.x;
@@ -13,12 +13,12 @@ void main() {
 #if SUM_CASCADES
     float weight = 1.0;
 #else
-    float weight = left * cascadeWeight(k, askedPosition);
+    float weight = left * cascadeWeight(k, inspectedPosition);
     left -= weight;
 #endif
     float border;
-    vec3 place = lpvPlace(k, askedPosition, askedNormal, border) - 0.5;
-    vec4 lobe = lpvLobe(askedNormal);
+    vec3 place = lpvPlace(k, inspectedPosition, inspectedNormal, border) - 0.5;
+    vec4 lobe = lpvLobe(inspectedNormal);
     for (int i = 0; i < 8; ++i) {
       ivec3 corner = ivec3(i & 1, i >> 1 & 1, i >> 2),
             texel = clampedInt(floor(place), ivec3(-2), ivec3(cells, cells, cells * grids.shape.y)) + corner;
@@ -26,7 +26,7 @@ void main() {
       float share = weight * border * near.x * near.y * near.z;
       ivec3 cell = texel - ivec3(0, 0, k * cells);
       if (!(share > 0.0) || any(lessThan(cell, ivec3(0))) || any(greaterThanEqual(cell, ivec3(cells)))) continue;
-      AskedPart part;
+      InspectedPart part;
       part.red = texelFetch(lpvRed, texel, 0);
       part.green = texelFetch(lpvGreen, texel, 0);
       part.blue = texelFetch(lpvBlue, texel, 0);

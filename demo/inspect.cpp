@@ -1,4 +1,4 @@
-#include "ask.hpp"
+#include "inspect.hpp"
 
 #include "base/error.hpp"
 
@@ -10,7 +10,7 @@ namespace {
 
 nlohmann::ordered_json vectorToJson(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
-nlohmann::ordered_json shareToJson(const PixelAnswer& answer, const PixelShare& share) {
+nlohmann::ordered_json shareToJson(const PixelInspection& answer, const PixelShare& share) {
   nlohmann::ordered_json json = {{"group", share.group},
                                  {"name", share.name},
                                  {"share", answer.shareOf(share.radiance)},
@@ -25,7 +25,7 @@ nlohmann::ordered_json shareToJson(const PixelAnswer& answer, const PixelShare& 
 
 }  // namespace
 
-nlohmann::ordered_json toJson(const PixelAnswer& answer) {
+nlohmann::ordered_json toJson(const PixelInspection& answer) {
   nlohmann::ordered_json json;
   json["pixel"] = {answer.pixel.x, answer.pixel.y};
   json["technique"] = answer.technique;
@@ -53,7 +53,7 @@ glm::ivec2 parsePixel(const std::string& text, glm::ivec2 size) {
   char rest = 0;
   if (std::sscanf(text.c_str(), "%d,%d%c", &pixel.x, &pixel.y, &rest) != 2 || pixel.x < 0 || pixel.y < 0 ||
       pixel.x >= size.x || pixel.y >= size.y)
-    throwBadInput("--ask {}: expected X,Y, a pixel of {}x{}, from 0,0 at the top left", text, size.x, size.y);
+    throwBadInput("--inspect {}: expected X,Y, a pixel of {}x{}, from 0,0 at the top left", text, size.x, size.y);
   return pixel;
 }
 

@@ -1,4 +1,4 @@
-#include "frame/pixel_answer.hpp"
+#include "frame/pixel_inspection.hpp"
 
 #include "base/error.hpp"
 
@@ -15,7 +15,8 @@ double luminance(const glm::dvec3& c) { return glm::dot(c, glm::dvec3(0.2126, 0.
 
 }  // namespace
 
-bool PixelAnswer::add(std::string group, std::string name, const glm::dvec3& light, std::vector<glm::dvec3> places) {
+bool PixelInspection::add(std::string group, std::string name, const glm::dvec3& light,
+                          std::vector<glm::dvec3> places) {
   if (light == glm::dvec3(0.0)) return false;
   PixelShare share;
   share.group = std::move(group);
@@ -26,13 +27,13 @@ bool PixelAnswer::add(std::string group, std::string name, const glm::dvec3& lig
   return true;
 }
 
-glm::dvec3 PixelAnswer::sum() const {
+glm::dvec3 PixelInspection::sum() const {
   glm::dvec3 sum(0.0);
   for (const PixelShare& share : shares) sum += share.radiance;
   return sum;
 }
 
-void PixelAnswer::checkSum() const {
+void PixelInspection::checkSum() const {
   // Filters of 3D textures weigh the cells of a lookup with 8 bits; among them are brighter ones and negative ones.
   constexpr double kHalfFloats = 1e-3, kFilters = 0.02;
   double brightest = 0.0, largest = 0.0;
@@ -48,12 +49,12 @@ void PixelAnswer::checkSum() const {
                             pixel.y, radiance.x, radiance.y, radiance.z, all.x, all.y, all.z));
 }
 
-double PixelAnswer::shareOf(const glm::dvec3& part) const {
+double PixelInspection::shareOf(const glm::dvec3& part) const {
   const double all = luminance(radiance);
   return all > 0.0 ? luminance(part) / all : 0.0;
 }
 
-std::vector<std::pair<std::string, glm::dvec3>> PixelAnswer::groups() const {
+std::vector<std::pair<std::string, glm::dvec3>> PixelInspection::groups() const {
   std::map<std::string, glm::dvec3> sums;
   for (const PixelShare& share : shares) sums.try_emplace(share.group, 0.0).first->second += share.radiance;
   std::vector<std::pair<std::string, glm::dvec3>> result(sums.begin(), sums.end());
@@ -62,7 +63,7 @@ std::vector<std::pair<std::string, glm::dvec3>> PixelAnswer::groups() const {
   return result;
 }
 
-void PixelAnswer::condense(std::size_t most) {
+void PixelInspection::condense(std::size_t most) {
   const auto brighter = [](const PixelShare& a, const PixelShare& b) {
     return std::abs(luminance(a.radiance)) > std::abs(luminance(b.radiance));
   };

@@ -1,5 +1,5 @@
-// lucerna render --ask: the shares of a pixel's light add up to the picture's pixel, whatever the technique, and where
-// one lamp shines on a plane they are what can be computed by hand.
+// lucerna render --inspect: the shares of a pixel's light add up to the picture's pixel, whatever the technique, and
+// where one lamp shines on a plane they are what can be computed by hand.
 #include "base/image.hpp"
 #include "support/faulty_shaders.hpp"
 #include "support/subprocess.hpp"
@@ -19,13 +19,13 @@ using lucerna::test::RunResult;
 using lucerna::test::TempFolder;
 using nlohmann::json;
 
-class Ask : public ::testing::Test {
+class Inspect : public ::testing::Test {
  protected:
   std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
   void write(const std::string& name, const std::string& text) const { std::ofstream(path(name)) << text; }
-  static json ask(const std::string& scene, const std::string& options, int x, int y) {
+  static json inspect(const std::string& scene, const std::string& options, int x, int y) {
     const RunResult result =
-        RUN_LUCERNA("render '" + scene + "' " + options + " --ask " + std::to_string(x) + "," + std::to_string(y));
+        RUN_LUCERNA("render '" + scene + "' " + options + " --inspect " + std::to_string(x) + "," + std::to_string(y));
     EXPECT_EQ(result.exitCode, 0) << result.err;
     return result.exitCode == 0 ? json::parse(result.out) : json();
   }
@@ -43,7 +43,7 @@ class Ask : public ::testing::Test {
   }
   /// Shares add up to the picture's pixel within `error`, relative to its brightest channel.
   void expectWhole(const std::string& scene, const std::string& options, int x, int y, double error = 0.01) const {
-    const json answer = ask(scene, options, x, y);
+    const json answer = inspect(scene, options, x, y);
     ASSERT_FALSE(answer.is_null());
     const glm::dvec3 radiance = drawn(scene, options, x, y), sum = sumOf(answer),
                      told = vectorOf(answer.at("radiance"));
@@ -63,27 +63,27 @@ class Ask : public ::testing::Test {
 const std::string kCornell = LUCERNA_SOURCE_DIR "/assets/cornell/cornell.json";
 const std::string kSmall = "--size 64x64 ";
 
-TEST_F(Ask, SharesAddUpToThePixelOfDirectLight) {
+TEST_F(Inspect, SharesAddUpToThePixelOfDirectLight) {
   expectWhole(kCornell, kSmall + "--technique direct", 12, 40, 1e-5);  // the sun on a wall
   expectWhole(kCornell, kSmall + "--technique direct", 32, 9, 1e-5);
-  const json lamp = ask(kCornell, kSmall + "--technique direct", 32, 9);
+  const json lamp = inspect(kCornell, kSmall + "--technique direct", 32, 9);
   EXPECT_EQ(lamp.at("shares").at(0).at("group"), "emission");
 }
 
-TEST_F(Ask, SharesAddUpToThePixelOfGatheredTexels) {
+TEST_F(Inspect, SharesAddUpToThePixelOfGatheredTexels) {
   expectWhole(kCornell, kSmall + "--technique rsm --set rsm.samples=100", 12, 40);
   // In shadow: all of it is gathered.
   expectWhole(kCornell, kSmall + "--technique rsm --set rsm.samples=100", 32, 20);
   expectWhole(kCornell, kSmall + "--technique rsm --set rsm.samples=100 --set rsm.interpolate=off", 12, 40);
 }
 
-TEST_F(Ask, SharesAddUpToThePixelOfPropagatedLight) { expectWhole(kCornell, kSmall + "--technique lpv", 32, 20); }
+TEST_F(Inspect, SharesAddUpToThePixelOfPropagatedLight) { expectWhole(kCornell, kSmall + "--technique lpv", 32, 20); }
 
-TEST_F(Ask, SharesAddUpToThePixelOfCacheRecords) {
+TEST_F(Inspect, SharesAddUpToThePixelOfCacheRecords) {
   expectWhole(kCornell, kSmall + "--technique irradiance-cache --set cache.samples=64", 32, 20);
 }
 
-TEST_F(Ask, SharesAddUpToThePixelOfPatches) {
+TEST_F(Inspect, SharesAddUpToThePixelOfPatches) {
   expectWhole(kCornell, kSmall + "--technique radiosity --set radiosity.edge=0.1", 32, 20);
   // Of coarse patches, whose form factors are repaired by a third.
   for (const char* more : {"", " --set radiosity.flat=on", " --set radiosity.direct=patches",
@@ -92,23 +92,23 @@ TEST_F(Ask, SharesAddUpToThePixelOfPatches) {
 }
 
 // The paths of the answer are those of the picture.
-TEST_F(Ask, SharesAddUpToThePixelOfPaths) {
+TEST_F(Inspect, SharesAddUpToThePixelOfPaths) {
   expectWhole(kCornell, kSmall + "--technique path --spp 96 --seed 7", 20, 50, 1e-4);
 }
 
 // Parts that do not add up to the pixel are not an answer.
-TEST_F(Ask, PartsThatDoNotAddUpAreAnError) {
+TEST_F(Inspect, PartsThatDoNotAddUpAreAnError) {
   const FaultyShaders shaders;
   shaders.plant("forward/surface.glsl", "record(term, vec4(radiance, 0.0));",
                 "record(term, vec4(1.1 * radiance, 0.0));");
   const RunResult result =
       lucerna::test::run("LUCERNA_SHADERS='" + shaders.path().string() + "' '" LUCERNA_BINARY "' render '" + kCornell +
-                         "' " + kSmall + "--technique direct --ask 12,40");
+                         "' " + kSmall + "--technique direct --inspect 12,40");
   EXPECT_EQ(result.exitCode, 1) << result.out;
   EXPECT_NE(result.err.find("its parts add up to"), std::string::npos) << result.err;
 }
 
-class AskPlane : public Ask {
+class AskPlane : public Inspect {
  protected:
   void SetUp() override {
     write("plane.mtl", "newmtl grey\nKd 0.5 0.4 0.3\n");
@@ -121,7 +121,7 @@ class AskPlane : public Ask {
 // Under the lamp: L = albedo / pi * I / h^2, all of it by the one lamp.
 TEST_F(AskPlane, OneLampGivesAllAsComputedByHand) {
   for (const std::string technique : {"direct", "rsm", "irradiance-cache"}) {
-    const json answer = ask(path("plane.json"), "--size 33x33 --technique " + technique, 16, 16);
+    const json answer = inspect(path("plane.json"), "--size 33x33 --technique " + technique, 16, 16);
     ASSERT_FALSE(answer.is_null());
     const glm::dvec3 expected = glm::dvec3(0.5, 0.4, 0.3) / std::numbers::pi * 8.0 / 4.0;
     const json& brightest = answer.at("shares").at(0);
@@ -136,7 +136,7 @@ TEST_F(AskPlane, OneLampGivesAllAsComputedByHand) {
 }
 
 TEST_F(AskPlane, APathGoesFromTheCameraOverThePlaneToTheLamp) {
-  const json answer = ask(path("plane.json"), "--size 33x33 --technique path --spp 4", 16, 16);
+  const json answer = inspect(path("plane.json"), "--size 33x33 --technique path --spp 4", 16, 16);
   ASSERT_FALSE(answer.is_null());
   EXPECT_EQ(answer.at("samples"), 4);
   ASSERT_EQ(answer.at("groups").size(), 1u);
@@ -152,7 +152,7 @@ TEST_F(AskPlane, APathGoesFromTheCameraOverThePlaneToTheLamp) {
 }
 
 TEST_F(AskPlane, WhatIsBehindTheSceneIsSaid) {
-  const json answer = ask(path("plane.json"), "--size 33x33 --technique direct --camera 0,3,3,0,9,-9,40", 16, 16);
+  const json answer = inspect(path("plane.json"), "--size 33x33 --technique direct --camera 0,3,3,0,9,-9,40", 16, 16);
   ASSERT_FALSE(answer.is_null());
   EXPECT_FALSE(answer.contains("surface"));
 }
@@ -160,11 +160,12 @@ TEST_F(AskPlane, WhatIsBehindTheSceneIsSaid) {
 TEST_F(AskPlane, WrongPixelsAreRefused) {
   for (const char* text : {"33,0", "0,33", "-1,0", "3", "a,b", "1,2,3"}) {
     const RunResult result =
-        RUN_LUCERNA("render " + path("plane.json") + " --technique direct --size 33x33 --ask=" + text);
+        RUN_LUCERNA("render " + path("plane.json") + " --technique direct --size 33x33 --inspect=" + text);
     EXPECT_EQ(result.exitCode, 2) << text;
-    EXPECT_NE(result.err.find("--ask"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("--inspect"), std::string::npos) << result.err;
   }
-  const RunResult both = RUN_LUCERNA("render " + path("plane.json") + " --size 33x33 --ask 1,1 -o " + path("a.png"));
+  const RunResult both =
+      RUN_LUCERNA("render " + path("plane.json") + " --size 33x33 --inspect 1,1 -o " + path("a.png"));
   EXPECT_EQ(both.exitCode, 2);
 }
 

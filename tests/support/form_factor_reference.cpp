@@ -1,10 +1,10 @@
-#include "support/form_factor_twin.hpp"
+#include "support/form_factor_reference.hpp"
 
 #include "base/angles.hpp"
 
 #include <cmath>
 
-namespace lucerna::twin {
+namespace lucerna::reference {
 
 double pointToPolygon(const glm::dvec3& point, const glm::dvec3& normal, std::span<const glm::dvec3> polygon) {
   // Sutherland-Hodgman against the horizon.
@@ -72,4 +72,4 @@ std::vector<Rectangle> cubeSquares(int n) {
   return squares;
 }
 
-}  // namespace lucerna::twin
+}  // namespace lucerna::reference

@@ -1,4 +1,4 @@
-#include "support/rad_twin.hpp"
+#include "support/rad_reference.hpp"
 
 #include <glm/gtc/constants.hpp>
 

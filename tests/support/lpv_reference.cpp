@@ -1,12 +1,13 @@
-// The double-precision CPU twin of the light-propagation-volume pipeline; see the header for sources and units.
-#include "support/lpv_twin.hpp"
+// The double-precision CPU reference implementation of the light-propagation-volume pipeline; see the header for
+// sources and units.
+#include "support/lpv_reference.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
 
-namespace lucerna::twin {
+namespace lucerna::reference {
 
 namespace {
 
@@ -37,7 +38,8 @@ std::optional<glm::ivec3> cellAt(const glm::ivec3& dims, const glm::dvec3& inCel
 }
 
 void requireSameGrid(const Volume& a, const Volume& b) {
-  if (!(a.grid == b.grid)) throw std::invalid_argument("lpv twin: the two volumes lie on different grids");
+  if (!(a.grid == b.grid))
+    throw std::invalid_argument("lpv reference implementation: the two volumes lie on different grids");
 }
 
 /// What one of the five faces of the destination receives from the source.
@@ -281,7 +283,8 @@ double fluxThroughFace(const Sh& intensity, const glm::dvec3& direction, bool cl
 Volume propagateStep(const Volume& source, const KernelOptions& options, const Volume* geometry) {
   const GridSpec& grid = source.grid;
   if (geometry != nullptr && !(geometry->grid == geometryGrid(grid))) {
-    throw std::invalid_argument("lpv twin: the geometry volume does not lie on the corners of the propagated grid");
+    throw std::invalid_argument(
+        "lpv reference implementation: the geometry volume does not lie on the corners of the propagated grid");
   }
   const std::array<AxisTerms, kAxes> kernel = kernelTerms(options);
   Volume destination(grid);
@@ -557,7 +560,7 @@ std::vector<VolumeRgb> joinCascades(std::span<const CascadeParts> cascades, cons
 std::vector<double> blendWeights(std::span<const Volume> cascades, const CascadeBlend& blend, const glm::dvec3& point,
                                  double lookupOffset) {
   if (blend.centres.size() != cascades.size())
-    throw std::invalid_argument("lpv twin: one blend centre a cascade is needed");
+    throw std::invalid_argument("lpv reference implementation: one blend centre a cascade is needed");
   std::vector<double> weights;
   double left = 1.0;
   for (std::size_t k = 0; k + 1 < cascades.size(); ++k) {
@@ -650,4 +653,4 @@ std::vector<Vpl> plateVpls(const Plate& plate, const OrthographicRsm& rsm) {
   return vpls;
 }
 
-}  // namespace lucerna::twin
+}  // namespace lucerna::reference

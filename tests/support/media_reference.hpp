@@ -1,5 +1,5 @@
-// The double-precision CPU twin of the functions for participating media (no GL). Written from the textbook's formulas
-// in long double, never from the shaders, which use others so as to bear single precision.
+// The double-precision CPU reference implementation of the functions for participating media (no GL). Written from the
+// textbook's formulas in long double, never from the shaders, which use others so as to bear single precision.
 #pragma once
 
 #include "scene/medium.hpp"
@@ -8,7 +8,7 @@
 
 #include <random>
 
-namespace lucerna::twin {
+namespace lucerna::reference {
 
 /// Cosine of the scattering angle for a uniform number: the textbook's inversion [HenyeyGreenstein1941]; xi = 0 is
 /// straight back.
@@ -41,4 +41,4 @@ struct SlabResult {
 };
 SlabResult walkSlab(double albedo, double opticalDepth, double g, double ior, double mu, int photons, unsigned seed);
 
-}  // namespace lucerna::twin
+}  // namespace lucerna::reference

@@ -2,11 +2,11 @@
 layout(local_size_x = 1) in;
 #include "lib/clamped_int.glsl"
 #include "irradiance_cache/lookup.glsl"
-#include "forward/asked_parts.glsl"
+#include "forward/inspected_parts.glsl"
 layout(binding = 7) uniform usamplerBuffer cacheSlots;
 layout(std430, binding = 0) readonly buffer CacheRecords { CacheRecord records[]; };
-uniform vec3 askedPosition;
-uniform vec3 askedNormal;  // of the mesh
+uniform vec3 inspectedPosition;
+uniform vec3 inspectedNormal;  // of the mesh
 
 
 // The cascades' weights, and the sum that normalises them.
@@ -15,9 +15,9 @@ float weightsOfCascades(out float weights[MAX_CASCADES], out float there[MAX_CAS
   for (int k = 0; k < MAX_CASCADES; ++k) {
     weights[k] = there[k] = 0.0;
     if (k >= grids.shape.y || !(left > 0.0)) continue;
-    float weight = left * cacheCascadeWeight(k, askedPosition);
+    float weight = left * cacheCascadeWeight(k, inspectedPosition);
     if (!(weight > 0.0)) continue;
-    there[k] = cachedInCascade(k, askedPosition, askedNormal).w;
+    there[k] = cachedInCascade(k, inspectedPosition, inspectedNormal).w;
     if (!(there[k] > kLeast)) continue;
     weights[k] = weight * min(there[k] / kEnough, 1.0);
     sum += weights[k];
@@ -31,18 +31,19 @@ void main() {
   float weights[MAX_CASCADES], there[MAX_CASCADES], sum = weightsOfCascades(weights, there);
   for (int k = 0; k < grids.shape.y; ++k) {
     if (!(weights[k] > 0.0)) continue;
-    vec3 place = cachePlace(k, askedPosition) - 0.5;
+    vec3 place = cachePlace(k, inspectedPosition) - 0.5;
     for (int i = 0; i < 24; ++i) {
-      int axis = i >> 3, face = faceOf(axis, askedNormal[axis]);
+      int axis = i >> 3, face = faceOf(axis, inspectedNormal[axis]);
       ivec3 corner = ivec3(i & 1, i >> 1 & 1, i >> 2 & 1),
             cell = clampedInt(floor(place), ivec3(-2), ivec3(cells)) + corner;
       vec3 near = mix(1.0 - fract(place), fract(place), vec3(corner));
-      float share = askedNormal[axis] * askedNormal[axis] * near.x * near.y * near.z * weights[k] / (there[k] * sum);
+      float share = inspectedNormal[axis] * inspectedNormal[axis] * near.x * near.y * near.z * weights[k] /
+                    (there[k] * sum);
       if (!(share > 0.0) || any(lessThan(cell, ivec3(0))) || any(greaterThanEqual(cell, ivec3(cells)))) continue;
       vec4 held = texelFetch(cacheTexture, cell + ivec3(0, 0, (k * CACHE_FACES + face) * cells), 0);
       uint slot = texelFetch(cacheSlots, slotOf(k, face, cell + cache.firstCell[k].xyz)).x;
       if (!(held.w > 0.0) || slot == 0u || slot > cache.capacity) continue;
-      tellPart(AskedPart(share * cacheUnit() * held.rgb, share * held.w, records[slot - 1u].position,
+      tellPart(InspectedPart(share * cacheUnit() * held.rgb, share * held.w, records[slot - 1u].position,
                          0.0, ivec4(cell, k), vec4(0.0), vec4(0.0), vec4(0.0)));
     }
   }

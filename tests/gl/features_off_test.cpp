@@ -22,20 +22,20 @@ struct Need {
   std::vector<const char*> stages;  ///< timed passes
 };
 
-const Need kNeeds[] = {{"diffuseTextures", {"diffuseTexture"}, {}},
-                       {"alphaMasks", {"maskTexture"}, {}},
-                       {"specular", {"materialSpecular", "materialShininess"}, {}},
-                       {"emission", {"materialEmission"}, {}},
-                       {"background", {}, {}},
-                       {"environment", {"environmentRadiance"}, {"environment"}},
-                       {"environmentPicture", {"environmentTexture", "environmentTurn"}, {"environment"}},
-                       {"spotLights", {"spotShadows"}, {"spot shadows"}},
-                       {"pointLights", {"pointShadows"}, {"point shadows"}},
-                       {"emissionTextures", {"emissionTexture"}, {}},
-                       {"normalMaps", {"normalTexture", "materialNormalScale"}, {}},
-                       {"metalMaps", {"metalTexture", "materialMetallic"}, {}}};
+const Need kFeatures[] = {{"diffuseTextures", {"diffuseTexture"}, {}},
+                          {"alphaMasks", {"maskTexture"}, {}},
+                          {"specular", {"materialSpecular", "materialShininess"}, {}},
+                          {"emission", {"materialEmission"}, {}},
+                          {"background", {}, {}},
+                          {"environment", {"environmentRadiance"}, {"environment"}},
+                          {"environmentPicture", {"environmentTexture", "environmentTurn"}, {"environment"}},
+                          {"spotLights", {"spotShadows"}, {"spot shadows"}},
+                          {"pointLights", {"pointShadows"}, {"point shadows"}},
+                          {"emissionTextures", {"emissionTexture"}, {}},
+                          {"normalMaps", {"normalTexture", "materialNormalScale"}, {}},
+                          {"metalMaps", {"metalTexture", "materialMetallic"}, {}}};
 
-class NeedsOff : public test::GlTest {
+class FeaturesOff : public test::GlTest {
  protected:
   struct Drawn {
     std::vector<std::string> resources, stages, leftOut;
@@ -74,19 +74,20 @@ class NeedsOff : public test::GlTest {
   }
 };
 
-TEST_F(NeedsOff, EveryNeutralNeedHasARow) {
-  ASSERT_EQ(measure::neutralNeeds().size(), std::size(kNeeds));
-  for (const Need& need : kNeeds)
-    EXPECT_EQ(std::count(measure::neutralNeeds().begin(), measure::neutralNeeds().end(), need.name), 1) << need.name;
+TEST_F(FeaturesOff, EveryNeutralFeatureHasARow) {
+  ASSERT_EQ(measure::neutralFeatures().size(), std::size(kFeatures));
+  for (const Need& need : kFeatures)
+    EXPECT_EQ(std::count(measure::neutralFeatures().begin(), measure::neutralFeatures().end(), need.name), 1)
+        << need.name;
 }
 
-TEST_F(NeedsOff, LeavesNothingBehindAndChangesNothing) {
+TEST_F(FeaturesOff, LeavesNothingBehindAndChangesNothing) {
   const Scene lean = test::openBox();
   const Drawn off = draw(lean);
   double brightest = 0.0;
   for (const glm::vec3& p : off.picture.pixels)
     brightest = std::max({brightest, static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)});
-  for (const Need& need : kNeeds) {
+  for (const Need& need : kFeatures) {
     SCOPED_TRACE(need.name);
     Scene scene = lean;
     measure::addNeutral(scene, need.name);
@@ -121,7 +122,7 @@ TEST_F(NeedsOff, LeavesNothingBehindAndChangesNothing) {
 }
 
 // How light is transported decides what else there is.
-TEST_F(NeedsOff, EachTransportLeavesTheOthersStagesOut) {
+TEST_F(FeaturesOff, EachTransportLeavesTheOthersStagesOut) {
   struct Made {
     std::string programs, stages;
     std::vector<std::string> leftOut;

@@ -1,4 +1,4 @@
-// `lucerna bench needs` as functions, for `bench all` and tests.
+// `lucerna bench features` as functions, for `bench all` and tests.
 #pragma once
 
 #include "shared/commands.hpp"
@@ -8,7 +8,7 @@
 
 namespace lucerna::demo::bench {
 
-struct NeedsResult {
+struct FeaturesResult {
   struct Cost {
     std::size_t gpuBytes = 0, programs = 0;
     double compileMs = 0.0, ms = 0.0;
@@ -21,9 +21,9 @@ struct NeedsResult {
 
 /// The scene with neutral data for every unneeded feature that has such data with these settings.
 Scene withEverything(const Scene& scene, const RenderSettings& settings);
-NeedsResult measureNeeds(const gl::Context& context, const Scene& scene, const Camera& camera, RenderSettings settings,
-                         int frames);
-nlohmann::ordered_json needsJson(const NeedsResult& result);
-std::string needsText(const NeedsResult& result);
+FeaturesResult measureFeatures(const gl::Context& context, const Scene& scene, const Camera& camera,
+                               RenderSettings settings, int frames);
+nlohmann::ordered_json featuresJson(const FeaturesResult& result);
+std::string featuresText(const FeaturesResult& result);
 
 }  // namespace lucerna::demo::bench
