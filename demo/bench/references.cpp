@@ -3,7 +3,7 @@
 #include "base/clock.hpp"
 #include "base/error.hpp"
 #include "irradiance_cache/irradiance_cache_frame.hpp"
-#include "shared/path_sampler.hpp"
+#include "pathtracer/path_sampler.hpp"
 #include "measure/batches.hpp"
 
 #include <fmt/core.h>

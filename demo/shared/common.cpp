@@ -136,25 +136,6 @@ nlohmann::ordered_json PictureOptions::toJson() const {
   return {{"technique", technique}, {"fidelity", fidelity}, {"deviations", deviations}, {"settings", settings}};
 }
 
-namespace {
-
-/// Values without which a setting that was given is not read, where no other was asked for (cache.transport): that of
-/// the first.
-void chooseImplied(RenderSettings& settings, const std::vector<const Setting*>& given) {
-  std::vector<const Setting*> chosen = given;
-  for (const Setting* setting : given) {
-    const auto with = readWith(*setting, settings.technique);
-    if (!with || with->empty()) continue;
-    const SettingAssignment implied = parseAssignment(*with);
-    if (std::ranges::find(chosen, implied.setting) != chosen.end()) continue;
-    if (!isRead(*setting, settings)) logInfo("{}: using {}, the only one that reads it", setting->key, *with);
-    parseSetting(*implied.setting, settings, implied.value);
-    chosen.push_back(implied.setting);
-  }
-}
-
-}  // namespace
-
 RenderSettings PictureOptions::parse() const {
   RenderSettings result;
   result.technique = techniqueNamed(technique.empty() ? impliedTechnique() : technique, "--technique").name;
@@ -162,24 +143,7 @@ RenderSettings PictureOptions::parse() const {
   applyFidelity(result, parseName<Fidelity>(fidelity, "--fidelity"));
   for (const std::string& deviation : deviations) applyDeviation(result, deviation);
   result.size = parseSize(size);
-  std::vector<const Setting*> given;
-  for (const std::string& assignment : settings) {
-    const auto [setting, value] = parseSet(assignment);
-    parseSetting(*setting, result, value, "--set ");
-    given.push_back(setting);
-  }
-  chooseImplied(result, given);
-  std::string unread;
-  for (const Setting* setting : given) {
-    const auto with = readWith(*setting, result.technique);
-    if (!with) unread += (unread.empty() ? "" : ", ") + std::string(setting->key);
-    else if (!isRead(*setting, result)) {
-      const SettingAssignment needed = parseAssignment(*with);
-      logWarning("--set {}: {}={} does not use it, {} does", setting->key, needed.setting->key,
-                 printSetting(*needed.setting, result), needed.value);
-    }
-  }
-  if (!unread.empty()) logWarning("--set {}: technique {} does not use it", unread, result.technique);
+  applySettings(result, settings, "--set ");
   return result;
 }
 

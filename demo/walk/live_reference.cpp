@@ -4,7 +4,7 @@
 #include "base/error.hpp"
 #include "base/hash.hpp"
 #include "base/log.hpp"
-#include "shared/path_sampler.hpp"
+#include "pathtracer/path_sampler.hpp"
 #include "measure/flip.hpp"
 
 #include <algorithm>
@@ -30,7 +30,7 @@ gl::Texture textureOf(const std::string& name, const Image& image) {
   return texture;
 }
 
-// The settings are those of bench/path_sampler.cpp, so that both give the same picture; another seed makes it
+// The settings are those of engine/pathtracer/path_sampler.cpp, so that both give the same picture; another seed makes it
 // independent of the cached samples.
 LiveReference::LiveReference(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
                              glm::ivec2 size, Component component)
@@ -59,7 +59,7 @@ LiveReference::~LiveReference() = default;
 void LiveReference::look(const Camera& camera) {
   keep();
   tracer_->setCamera(camera);
-  key_ = measure::keyOf(scene_, camera, size_, transportOf(component_), bench::PathSampler::kVersion);
+  key_ = measure::keyOf(scene_, camera, size_, transportOf(component_), PathSampler::kVersion);
   cached_ = cache_.load(*key_);
   cachedSamples_ = cached_ ? cached_->samples : 0;
   shownSamples_ = keptSamples_ = 0;

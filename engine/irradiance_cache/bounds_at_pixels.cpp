@@ -10,7 +10,6 @@
 namespace lucerna {
 
 namespace {
-constexpr GLuint kPixelListBuffer = 1;  // GL_SHADER_STORAGE_BUFFER
 constexpr std::size_t kAtOnce = 1u << 14;  // of CACHE_LANES lanes each, per submission: gl/chunks.hpp
 }  // namespace
 
@@ -30,10 +29,10 @@ Image IrradianceCache::atPixels(int rounds, const std::function<void(const gl::B
     const std::size_t first = i % blocks * kAtOnce, count = std::min(kAtOnce, pixels - first);
     bindRecords();
     scene_.bind();
-    records.bindStorage(kRecordsBuffer);
-    list.bindStorage(kPixelListBuffer);
+    records.bindStorage(CACHE_RECORDS_BUFFER);
+    list.bindStorage(CACHE_LIST_BUFFER);
     work.upload(0, kWorkWords * sizeof(GLuint), noWork().data());
-    work.bindStorage(kWorkBuffer);
+    work.bindStorage(CACHE_WORK_BUFFER);
     {
       const gl::ComputePass pass("cache records of pixels", gl::Barrier::storage | gl::Barrier::command);
       program.use();

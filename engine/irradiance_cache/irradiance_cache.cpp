@@ -16,8 +16,6 @@ namespace lucerna {
 namespace {
 
 // GL_SHADER_STORAGE_BUFFER
-constexpr GLuint kSlotsBuffer = 1, kKeptBuffer = 2, kPrefetchBuffer = 2, kWorkBeforeBuffer = 3;
-constexpr GLuint kSlotsUnit = 7, kKeysUnit = 1, kSeenUnit = 6;  // where rays are traced, 0 has the materials
 constexpr std::uint32_t kSegmentsOfAll = 64;  // of a path that meets no records; it misses a share of albedo^64
 constexpr std::uint32_t kSoftwareIterations = 2000,
                         kMostIterations = 1u << 16;  // like the path tracer's, less one segment
@@ -192,8 +190,8 @@ void IrradianceCache::bindRecords() const {
   cascadeConstants_.bindUniform(BLOCK_CASCADES);
   constants_.bindUniform(BLOCK_CACHE);
   pathConstants_.bindUniform(BLOCK_CACHE_PATHS);
-  records_[0].bindStorage(kRecordsBuffer);
-  work_[0].bindStorage(kWorkBuffer);
+  records_[0].bindStorage(CACHE_RECORDS_BUFFER);
+  work_[0].bindStorage(CACHE_WORK_BUFFER);
 }
 
 // After the grids have moved, copies records that are still inside to a new list and enters them in the slots.
@@ -205,10 +203,10 @@ void IrradianceCache::keep() {
   const gl::ComputePass pass("cache keep records", gl::Barrier::storage | gl::Barrier::textureFetch);
   keep_->use();
   bindRecords();
-  records_[1].bindStorage(kRecordsBuffer);
-  records_[0].bindStorage(kKeptBuffer);
-  slotTable_.buffer().bindStorage(kSlotsBuffer);
-  work_[1].bindStorage(kWorkBeforeBuffer);
+  records_[1].bindStorage(CACHE_RECORDS_BUFFER);
+  records_[0].bindStorage(CACHE_KEPT_BUFFER);
+  slotTable_.buffer().bindStorage(CACHE_SLOTS_BUFFER);
+  work_[1].bindStorage(CACHE_WORK_BEFORE_BUFFER);
   pass.dispatchIndirect(work_[1]);
 }
 
@@ -219,7 +217,7 @@ void IrradianceCache::findPrefetchPoints() {
   prefetch_->use();
   bindRecords();
   scene_.bind();
-  prefetchPoints_.bindStorage(kRecordsBuffer);
+  prefetchPoints_.bindStorage(CACHE_FOUND_BUFFER);
   pass.dispatch(glm::ivec3(settings_.prefetch, 1, 1), glm::ivec3(64, 1, 1));
   prefetchedFrom_ = path_.cameraPosition;
 }
@@ -235,10 +233,10 @@ void IrradianceCache::mark(const Inputs& inputs) {
     mark_->use();
     bindRecords();
     inputs.visible.bind(*mark_, inputs.worldFromClip);
-    slotTable_.bind(kSlotsUnit);
-    seen_.buffer().bindStorage(kRecordsBuffer);
-    keys_.buffer().bindStorage(kSlotsBuffer);
-    prefetchPoints_.bindStorage(kPrefetchBuffer);
+    slotTable_.bind(UNIT_CACHE_SLOTS);
+    seen_.buffer().bindStorage(CACHE_SEEN_BUFFER);
+    keys_.buffer().bindStorage(CACHE_KEYS_BUFFER);
+    prefetchPoints_.bindStorage(CACHE_PREFETCH_BUFFER);
     pass.dispatch(size, group);
   }
   const gl::ComputePass pass("cache claim records",
@@ -246,10 +244,10 @@ void IrradianceCache::mark(const Inputs& inputs) {
   claim_->use();
   bindRecords();
   inputs.visible.bind(*claim_, inputs.worldFromClip);
-  slotTable_.bind(kSlotsUnit);
-  keys_.bind(kKeysUnit);
-  slotTable_.buffer().bindStorage(kSlotsBuffer);
-  prefetchPoints_.bindStorage(kPrefetchBuffer);
+  slotTable_.bind(UNIT_CACHE_SLOTS);
+  keys_.bind(UNIT_CACHE_KEYS);
+  slotTable_.buffer().bindStorage(CACHE_SLOTS_BUFFER);
+  prefetchPoints_.bindStorage(CACHE_PREFETCH_BUFFER);
   pass.dispatch(size, group);
 }
 
@@ -262,14 +260,14 @@ void IrradianceCache::list(int target, bool countsFading) {
   cascadeConstantsBefore_.bindUniform(BLOCK_CASCADES);  // new records look up the light shown in their place before
   irradiance_.bind(UNIT_CACHE);
   scene_.bind();
-  lit_.bindStorage(kSlotsBuffer);
+  lit_.bindStorage(CACHE_LIST_BUFFER);
   const gl::ComputePass pass("cache list records", gl::Barrier::storage | gl::Barrier::command);
   list_->use();
   list_->set("mostLit", static_cast<unsigned>(lit_.bytes() / sizeof(GLuint)));
   list_->set("pathTarget", static_cast<unsigned>(target));
   list_->set("countsFading", countsFading ? 1 : 0);
-  slotTable_.bind(kSlotsUnit);
-  seen_.bind(kSeenUnit);
+  slotTable_.bind(UNIT_CACHE_SLOTS);
+  seen_.bind(UNIT_CACHE_SEEN);
   pass.dispatchIndirect(work_[0]);
   cascadeConstants_.bindUniform(BLOCK_CASCADES);
 }
@@ -313,7 +311,7 @@ void IrradianceCache::store(float mostChange) {
   store_->set("enoughPaths", static_cast<unsigned>(std::min(settings_.samples, settings_.leastRays)));
   store_->set("mostChange", mostChange);
   bindRecords();
-  slotTable_.bind(kSlotsUnit);
+  slotTable_.bind(UNIT_CACHE_SLOTS);
   irradiance_.bindImage(0, gl::Access::write);
   pass.dispatchIndirect(work_[0]);
 }
@@ -362,7 +360,7 @@ std::vector<InspectedPart> IrradianceCache::inspect(const glm::vec3& position, c
     program.use();
     bindRecords();
     bindForLookup();
-    slotTable_.bind(kSlotsUnit);
+    slotTable_.bind(UNIT_CACHE_SLOTS);
     program.set("inspectedPosition", position);
     program.set("inspectedNormal", normal);
     parts.bind();

@@ -107,7 +107,6 @@ class IrradianceCache {
   std::size_t gpuBytes() const;
 
  private:
-  static constexpr GLuint kRecordsBuffer = 0, kWorkBuffer = 5;  // GL_SHADER_STORAGE_BUFFER
   static constexpr double kIterationsOfPath = 256.0;  ///< of a lane, approximately (gl/chunks.hpp)
   // Words of shaders/irradiance_cache/work.glsl.
   static constexpr std::size_t kWanted = 3, kWaiting = 4, kFrame = 5, kLitGroups = 6, kWorkWords = 36;

@@ -19,9 +19,6 @@ namespace lucerna {
 
 namespace {
 
-constexpr GLuint kRecordsBuffer = 0, kListBuffer = 1, kLinksBuffer = 6, kBouncedBuffer = 7;  // storage blocks
-constexpr GLuint kTreeUnit = 7, kBounceSlotsUnit = 8, kLightUnit = 9;
-constexpr GLuint kPlacesUnit = 13, kMapUnits = 10;  // with rays: the texture atlas has the usual ones
 constexpr std::size_t kLinkBytes = 12;  // of a ray: a point's number and the albedo there
 constexpr int kMostBounces = 64;
 constexpr int kRaysOfLane = 2;  // around a record
@@ -215,9 +212,9 @@ void LightGather::gatherTree(const gl::Program& program, const ReflectiveShadowM
     program.set("rayEnd", rayEnd_);
   }
   if (&program == sun_ && visibility_ == GatherVisibility::rays)
-    map.position.bind(kMapUnits), map.normal.bind(kMapUnits + 1), map.flux.bind(kMapUnits + 2);
+    map.position.bind(UNIT_CACHE_MAP), map.normal.bind(UNIT_CACHE_MAP + 1), map.flux.bind(UNIT_CACHE_MAP + 2);
   else if (&program == sun_) map.bind();
-  tree.bind(program, kTreeUnit);
+  tree.bind(program, UNIT_CACHE_TREE);
   targets.dispatch(pass, program, iterationsOfLane(tree.depth(), tree.top(), tree.layers()));
 }
 
@@ -231,11 +228,11 @@ void LightGather::gatherHemisphere(const gl::Program& program, const Targets& ta
   program.set("bounceCells", bounceCells_);
   paths_->bind();
   if (parts_.bounces) {
-    slots_.bind(kBounceSlotsUnit);
-    light_[0].bind(kLightUnit);
-    links_.bindStorage(kLinksBuffer);
-    places_.bind(kPlacesUnit);
-    places_.buffer().bindStorage(kBouncedBuffer);
+    slots_.bind(UNIT_CACHE_BOUNCE_SLOTS);
+    light_[0].bind(UNIT_CACHE_BOUNCED);
+    links_.bindStorage(CACHE_LINKS_BUFFER);
+    places_.bind(UNIT_CACHE_BOUNCE_PLACES);
+    places_.buffer().bindStorage(CACHE_BOUNCED_BUFFER);
   }
   targets.dispatch(pass, program, kRaysOfLane * gl::kIterationsOfRay);
 }
@@ -253,8 +250,8 @@ void LightGather::update(const std::vector<ReflectiveShadowMap::Outputs>& maps, 
   if (!parts_.bounces || points_ == 0) return;
 
   // The points' own light of emissive surfaces and the sky, where their rays lead, and one bounce of sun and lamps.
-  pointData_.bindStorage(kRecordsBuffer);
-  list_.bindStorage(kListBuffer);
+  pointData_.bindStorage(CACHE_RECORDS_BUFFER);
+  list_.bindStorage(CACHE_LIST_BUFFER);
   const Targets targets{nullptr, 0, points_};
   if (!probed_) {
     trace_->set("probes", 1);
@@ -279,10 +276,10 @@ void LightGather::bounce(int to, bool first) {
   bounce_->use();
   bounce_->set("first", first ? 1 : 0);
   bounce_->set("points", static_cast<unsigned>(points_));
-  pointData_.bindStorage(kRecordsBuffer);
-  links_.bindStorage(kLinksBuffer);
-  light_[1 - to].bind(kLightUnit);
-  light_[to].buffer().bindStorage(kBouncedBuffer);
+  pointData_.bindStorage(CACHE_RECORDS_BUFFER);
+  links_.bindStorage(CACHE_LINKS_BUFFER);
+  light_[1 - to].bind(UNIT_CACHE_BOUNCED);
+  light_[to].buffer().bindStorage(CACHE_BOUNCED_BUFFER);
   pass.dispatch(glm::ivec3(static_cast<int>(points_), 1, 1), glm::ivec3(CACHE_LANES, 1, 1));
 }
 

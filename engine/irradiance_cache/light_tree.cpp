@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "gl/pass.hpp"
+#include "shared/irradiance_cache.h"
 
 #include <algorithm>
 #include <bit>
@@ -9,7 +10,6 @@
 namespace lucerna {
 
 namespace {
-constexpr GLuint kNodesBuffer = 0;
 constexpr std::size_t kNodeBytes = 48;
 }  // namespace
 
@@ -49,7 +49,7 @@ void LightTree::build(const ReflectiveShadowMap::Outputs& map) {
     setShape(program);
     program.set("depth", depth);
     if (fromTexels) map.bind();
-    nodes_.buffer().bindStorage(kNodesBuffer);
+    nodes_.buffer().bindStorage(CACHE_NODES_BUFFER);
     pass.dispatch(glm::ivec3(1 << depth, 1 << depth, layers_), glm::ivec3(8, 8, 1));
   }
 }

@@ -1,6 +1,7 @@
 #include "render/settings.hpp"
 
 #include "base/error.hpp"
+#include "base/log.hpp"
 #include "render/techniques.hpp"
 
 #include <fmt/ranges.h>
@@ -72,6 +73,45 @@ SettingAssignment parseAssignment(std::string_view assignment, std::string_view 
   for (const Setting& s : allSettings())
     if (!only || s.cost == *only) keys.push_back(s.key);
   throwBadInput("{}{}: unknown key; expected one of {}", where, assignment, fmt::join(keys, ", "));
+}
+
+namespace {
+
+/// Values without which a setting that was given is not read, where no other was asked for: that of the first.
+void chooseImplied(RenderSettings& settings, const std::vector<const Setting*>& given) {
+  std::vector<const Setting*> chosen = given;
+  for (const Setting* setting : given) {
+    const auto with = readWith(*setting, settings.technique);
+    if (!with || with->empty()) continue;
+    const SettingAssignment implied = parseAssignment(*with);
+    if (std::ranges::find(chosen, implied.setting) != chosen.end()) continue;
+    if (!isRead(*setting, settings)) logInfo("{}: using {}, the only one that reads it", setting->key, *with);
+    parseSetting(*implied.setting, settings, implied.value);
+    chosen.push_back(implied.setting);
+  }
+}
+
+}  // namespace
+
+void applySettings(RenderSettings& settings, const std::vector<std::string>& assignments, std::string_view where) {
+  std::vector<const Setting*> given;
+  for (const std::string& assignment : assignments) {
+    const auto [setting, value] = parseAssignment(assignment, where);
+    parseSetting(*setting, settings, value, where);
+    given.push_back(setting);
+  }
+  chooseImplied(settings, given);
+  std::string unread;
+  for (const Setting* setting : given) {
+    const auto with = readWith(*setting, settings.technique);
+    if (!with) unread += (unread.empty() ? "" : ", ") + std::string(setting->key);
+    else if (!isRead(*setting, settings)) {
+      const SettingAssignment needed = parseAssignment(*with);
+      logWarning("{}{}: {}={} does not use it, {} does", where, setting->key, needed.setting->key,
+                 printSetting(*needed.setting, settings), needed.value);
+    }
+  }
+  if (!unread.empty()) logWarning("{}{}: technique {} does not use it", where, unread, settings.technique);
 }
 
 std::optional<std::string_view> readWith(const Setting& setting, std::string_view technique) {

@@ -26,6 +26,10 @@ struct SettingAssignment {
 SettingAssignment parseAssignment(std::string_view assignment, std::string_view where = "",
                                   const SettingCost* only = nullptr);
 
+/// Parses "KEY=VALUE" each, as parseAssignment() and parseSetting() do. A setting that is read only with a value of
+/// another (cache.transport) chooses that value, unless it is given too. Settings that are not read are warnings.
+void applySettings(RenderSettings& settings, const std::vector<std::string>& assignments, std::string_view where = "");
+
 /// Whether the technique reads the setting: empty if it always does, "cache.transport=gather" if only with that value;
 /// nothing if it never does.
 std::optional<std::string_view> readWith(const Setting& setting, std::string_view technique);

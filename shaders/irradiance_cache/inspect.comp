@@ -3,8 +3,8 @@ layout(local_size_x = 1) in;
 #include "lib/clamped_int.glsl"
 #include "irradiance_cache/lookup.glsl"
 #include "forward/inspected_parts.glsl"
-layout(binding = 7) uniform usamplerBuffer cacheSlots;
-layout(std430, binding = 0) readonly buffer CacheRecords { CacheRecord records[]; };
+layout(binding = UNIT_CACHE_SLOTS) uniform usamplerBuffer cacheSlots;
+layout(std430, binding = CACHE_RECORDS_BUFFER) readonly buffer CacheRecords { CacheRecord records[]; };
 uniform vec3 inspectedPosition;
 uniform vec3 inspectedNormal;  // of the mesh
 

@@ -2,11 +2,11 @@
 layout(local_size_x = 64) in;
 #include "irradiance_cache/common.glsl"
 #include "irradiance_cache/work.glsl"
-layout(std430, binding = 5) restrict buffer CacheWorkBlock { CacheWork work; };
-layout(std430, binding = 0) readonly restrict buffer CacheRecords { CacheRecord before[]; };
-layout(std430, binding = 1) writeonly restrict buffer CacheSlots { uint slots[]; };
-layout(std430, binding = 2) writeonly restrict buffer CacheKept { CacheRecord records[]; };
-layout(std430, binding = 3) readonly restrict buffer CacheWorkBefore { uint workBefore[]; };
+layout(std430, binding = CACHE_WORK_BUFFER) restrict buffer CacheWorkBlock { CacheWork work; };
+layout(std430, binding = CACHE_RECORDS_BUFFER) readonly restrict buffer CacheRecords { CacheRecord before[]; };
+layout(std430, binding = CACHE_SLOTS_BUFFER) writeonly restrict buffer CacheSlots { uint slots[]; };
+layout(std430, binding = CACHE_KEPT_BUFFER) writeonly restrict buffer CacheKept { CacheRecord records[]; };
+layout(std430, binding = CACHE_WORK_BEFORE_BUFFER) readonly restrict buffer CacheWorkBefore { uint workBefore[]; };
 
 void main() {
   uint i = gl_GlobalInvocationID.x;

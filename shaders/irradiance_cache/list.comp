@@ -11,11 +11,11 @@ layout(std140, binding = BLOCK_CACHE_PATHS) uniform PathBlock { PathConstants tr
 #include "rays/bvh.glsl"
 #include "irradiance_cache/lookup.glsl"
 #include "irradiance_cache/work.glsl"
-layout(std430, binding = 5) restrict buffer CacheWorkBlock { CacheWork work; };
+layout(std430, binding = CACHE_WORK_BUFFER) restrict buffer CacheWorkBlock { CacheWork work; };
 #include "irradiance_cache/seen.glsl"
-layout(std430, binding = 0) restrict buffer CacheRecords { CacheRecord records[]; };
-layout(std430, binding = 1) writeonly restrict buffer CacheLit { uint lit[]; };
-layout(binding = 6) uniform usamplerBuffer cacheSeen;
+layout(std430, binding = CACHE_RECORDS_BUFFER) restrict buffer CacheRecords { CacheRecord records[]; };
+layout(std430, binding = CACHE_LIST_BUFFER) writeonly restrict buffer CacheLit { uint lit[]; };
+layout(binding = UNIT_CACHE_SEEN) uniform usamplerBuffer cacheSeen;
 #include "irradiance_cache/neighbours.glsl"
 uniform uint mostLit;     // records
 uniform uint pathTarget;  // paths that each record should have

@@ -8,20 +8,20 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "lib/clamped_int.glsl"
 #include "irradiance_cache/common.glsl"
 #include "irradiance_cache/work.glsl"
-layout(std430, binding = 5) restrict buffer CacheWorkBlock { CacheWork work; };
+layout(std430, binding = CACHE_WORK_BUFFER) restrict buffer CacheWorkBlock { CacheWork work; };
 #include "irradiance_cache/cascade_weight.glsl"
 #include "forward/visible.glsl"
-layout(binding = 7) uniform usamplerBuffer cacheSlots;  // 0: empty, else the record's index + 1
+layout(binding = UNIT_CACHE_SLOTS) uniform usamplerBuffer cacheSlots;  // 0: empty, else the record's index + 1
 #if CLAIM
-layout(binding = 1) uniform usamplerBuffer cacheKeys;
-layout(std430, binding = 0) writeonly restrict buffer CacheRecords { CacheRecord records[]; };
+layout(binding = UNIT_CACHE_KEYS) uniform usamplerBuffer cacheKeys;
+layout(std430, binding = CACHE_RECORDS_BUFFER) writeonly restrict buffer CacheRecords { CacheRecord records[]; };
 // aliased CacheSlots: only the winner of an empty slot changes it; all others skip the slot with either value
-layout(std430, binding = 1) writeonly restrict buffer CacheSlots { uint slots[]; };
+layout(std430, binding = CACHE_SLOTS_BUFFER) writeonly restrict buffer CacheSlots { uint slots[]; };
 #else
-layout(std430, binding = 0) writeonly restrict buffer CacheSeen { uint seen[]; };
-layout(std430, binding = 1) restrict buffer CacheKeys { uint keys[]; };
+layout(std430, binding = CACHE_SEEN_BUFFER) writeonly restrict buffer CacheSeen { uint seen[]; };
+layout(std430, binding = CACHE_KEYS_BUFFER) restrict buffer CacheKeys { uint keys[]; };
 #endif
-layout(std430, binding = 2) readonly restrict buffer CachePrefetch { PrefetchPoint prefetched[]; };
+layout(std430, binding = CACHE_PREFETCH_BUFFER) readonly restrict buffer CachePrefetch { PrefetchPoint prefetched[]; };
 
 const float kLeans = 0.02;  // squared component of the normal from which the slot is filled
 const int kPrefetchCascades = 2;

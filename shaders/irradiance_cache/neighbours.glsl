@@ -1,6 +1,6 @@
 // The records beside one: in the cells around its own, of its cascade and face.
 // Needs irradiance_cache/common.glsl.
-layout(binding = 7) uniform usamplerBuffer cacheSlots;
+layout(binding = UNIT_CACHE_SLOTS) uniform usamplerBuffer cacheSlots;
 const int kNeighbours = 26;
 
 // i: 0 to kNeighbours - 1. false: that cell has none.

@@ -26,11 +26,11 @@ layout(std140, binding = BLOCK_CACHE_PATHS) uniform PathBlock { PathConstants tr
 #include "irradiance_cache/common.glsl"
 #endif
 // unordered CacheRecords: each dispatch changes the records of its own part of the list
-layout(std430, binding = 0) restrict buffer CacheRecords { CacheRecord records[]; };
+layout(std430, binding = CACHE_RECORDS_BUFFER) restrict buffer CacheRecords { CacheRecord records[]; };
 #include "irradiance_cache/work.glsl"
-layout(std430, binding = 5) readonly restrict buffer CacheWorkBlock { CacheWork work; };
+layout(std430, binding = CACHE_WORK_BUFFER) readonly restrict buffer CacheWorkBlock { CacheWork work; };
 #include "irradiance_cache/surface.glsl"
-layout(std430, binding = 1) readonly restrict buffer CacheLit { uint lit[]; };
+layout(std430, binding = CACHE_LIST_BUFFER) readonly restrict buffer CacheLit { uint lit[]; };
 uniform uint firstGroup;  // of a part of `lit`
 shared vec3 found[CACHE_LANES];
 

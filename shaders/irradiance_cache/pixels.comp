@@ -9,10 +9,10 @@ layout(std140, binding = BLOCK_CACHE_PATHS) uniform PathBlock { PathConstants tr
 #include "rays/bvh.glsl"
 #include "irradiance_cache/common.glsl"
 #include "irradiance_cache/work.glsl"
-layout(std430, binding = 5) restrict buffer CacheWorkBlock { CacheWork work; };
+layout(std430, binding = CACHE_WORK_BUFFER) restrict buffer CacheWorkBlock { CacheWork work; };
 #include "irradiance_cache/seen.glsl"
-layout(std430, binding = 0) writeonly restrict buffer CacheRecords { CacheRecord records[]; };
-layout(std430, binding = 1) writeonly restrict buffer CacheLit { uint lit[]; };
+layout(std430, binding = CACHE_RECORDS_BUFFER) writeonly restrict buffer CacheRecords { CacheRecord records[]; };
+layout(std430, binding = CACHE_LIST_BUFFER) writeonly restrict buffer CacheLit { uint lit[]; };
 uniform uint first, pixels;
 uniform int round;  // gives other random numbers
 

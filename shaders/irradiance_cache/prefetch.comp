@@ -10,7 +10,7 @@ layout(std140, binding = BLOCK_CACHE_PATHS) uniform PathBlock { PathConstants tr
 #include "rays/bvh.glsl"
 #include "irradiance_cache/common.glsl"
 #include "irradiance_cache/seen.glsl"
-layout(std430, binding = 0) writeonly restrict buffer CachePrefetch { PrefetchPoint prefetched[]; };
+layout(std430, binding = CACHE_FOUND_BUFFER) writeonly restrict buffer CachePrefetch { PrefetchPoint prefetched[]; };
 
 void main() {
   uint index = gl_GlobalInvocationID.x;

@@ -5,8 +5,8 @@
 layout(local_size_x = 64) in;
 #include "irradiance_cache/common.glsl"
 #include "irradiance_cache/work.glsl"
-layout(std430, binding = 5) readonly restrict buffer CacheWorkBlock { CacheWork work; };
-layout(std430, binding = 0) restrict buffer CacheRecords { CacheRecord records[]; };
+layout(std430, binding = CACHE_WORK_BUFFER) readonly restrict buffer CacheWorkBlock { CacheWork work; };
+layout(std430, binding = CACHE_RECORDS_BUFFER) restrict buffer CacheRecords { CacheRecord records[]; };
 layout(GRID_FORMAT, binding = 0) writeonly uniform image3D cacheTexture;
 #include "irradiance_cache/neighbours.glsl"
 uniform uint enoughPaths;  // a CACHE_FIRST record follows its estimate without limit until it has this many

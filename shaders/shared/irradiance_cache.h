@@ -6,6 +6,31 @@
 
 SHARED_BEGIN
 
+// Storage blocks
+#define CACHE_RECORDS_BUFFER 0
+#define CACHE_FOUND_BUFFER 0  // points around the camera, when rays find them
+#define CACHE_SEEN_BUFFER 0
+#define CACHE_NODES_BUFFER 0
+#define CACHE_LIST_BUFFER 1
+#define CACHE_SLOTS_BUFFER 1
+#define CACHE_KEYS_BUFFER 1
+#define CACHE_KEPT_BUFFER 2
+#define CACHE_PREFETCH_BUFFER 2
+#define CACHE_WORK_BEFORE_BUFFER 3
+#define CACHE_WORK_BUFFER 5
+#define CACHE_LINKS_BUFFER 6
+#define CACHE_BOUNCED_BUFFER 7
+
+// Texture units; where rays are traced, 0 has the materials
+#define UNIT_CACHE_KEYS 1
+#define UNIT_CACHE_SEEN 6
+#define UNIT_CACHE_SLOTS 7
+#define UNIT_CACHE_TREE 7
+#define UNIT_CACHE_BOUNCE_SLOTS 8
+#define UNIT_CACHE_BOUNCED 9
+#define UNIT_CACHE_MAP 10  // and the next two: with rays, the texture atlas has the usual ones
+#define UNIT_CACHE_BOUNCE_PLACES 13
+
 #define CACHE_FACES 6           // per cell: 2 * axis + (1 if the normal points down the axis)
 #define CACHE_UNPLACED 0xffffffffu  // a record's triangle before its pixel's ray was traced
 #define CACHE_NOWHERE 0xfffffffeu   // the ray met nothing

@@ -2,10 +2,10 @@
 // their rays have met, times the albedo there (around.comp). One invocation per point.
 layout(local_size_x = 64) in;
 #include "shared/irradiance_cache.h"
-layout(std430, binding = 0) readonly restrict buffer CacheRecords { CacheRecord records[]; };
-layout(std430, binding = 6) readonly restrict buffer BounceLinks { uint links[]; };
-layout(std430, binding = 7) writeonly restrict buffer BouncedLight { vec4 bounced[]; };
-layout(binding = 9) uniform samplerBuffer bouncedLight;
+layout(std430, binding = CACHE_RECORDS_BUFFER) readonly restrict buffer CacheRecords { CacheRecord records[]; };
+layout(std430, binding = CACHE_LINKS_BUFFER) readonly restrict buffer BounceLinks { uint links[]; };
+layout(std430, binding = CACHE_BOUNCED_BUFFER) writeonly restrict buffer BouncedLight { vec4 bounced[]; };
+layout(binding = UNIT_CACHE_BOUNCED) uniform samplerBuffer bouncedLight;
 uniform uint points;
 uniform bool first;  // only their own
 

@@ -3,15 +3,16 @@
 // else their sum.
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "shared/bindings.h"
+#include "shared/irradiance_cache.h"
 #include "irradiance_cache/gather/tree.glsl"
 #include "lib/finite.glsl"
 #if FROM_TEXELS
 layout(binding = UNIT_RSM_POSITION) uniform sampler2DArray rsmPosition;
 layout(binding = UNIT_RSM_NORMAL) uniform sampler2DArray rsmNormal;
 layout(binding = UNIT_RSM_FLUX) uniform sampler2DArray rsmFlux;
-layout(std430, binding = 0) writeonly restrict buffer Nodes { uvec4 nodes[]; };
+layout(std430, binding = CACHE_NODES_BUFFER) writeonly restrict buffer Nodes { uvec4 nodes[]; };
 #else
-layout(std430, binding = 0) restrict buffer Nodes { uvec4 nodes[]; };
+layout(std430, binding = CACHE_NODES_BUFFER) restrict buffer Nodes { uvec4 nodes[]; };
 #endif
 uniform int depth;
 

@@ -39,10 +39,10 @@ const float kPi = 3.14159265358979;
 #include "rsm/transfer.glsl"
 #endif
 #include "irradiance_cache/gather/tree.glsl"
-layout(binding = 7) uniform usamplerBuffer treeNodes;
+layout(binding = UNIT_CACHE_TREE) uniform usamplerBuffer treeNodes;
 // unordered CacheRecords: each dispatch changes the records of its own part of the list
-layout(std430, binding = 0) restrict buffer CacheRecords { CacheRecord records[]; };
-layout(std430, binding = 1) readonly restrict buffer CacheLit { uint lit[]; };
+layout(std430, binding = CACHE_RECORDS_BUFFER) restrict buffer CacheRecords { CacheRecord records[]; };
+layout(std430, binding = CACHE_LIST_BUFFER) readonly restrict buffer CacheLit { uint lit[]; };
 uniform uint last;         // 1: after this dispatch records have all their light
 uniform uint firstGroup;  // of `lit`
 #if SHARED_WITH_RAYS

@@ -21,8 +21,8 @@ layout(std140, binding = BLOCK_CACHE_PATHS) uniform PathBlock { PathConstants tr
 #include "irradiance_cache/common.glsl"
 #include "irradiance_cache/surface.glsl"
 // unordered CacheRecords: each dispatch changes the records of its own part of the list
-layout(std430, binding = 0) restrict buffer CacheRecords { CacheRecord records[]; };
-layout(std430, binding = 1) readonly restrict buffer CacheLit { uint lit[]; };
+layout(std430, binding = CACHE_RECORDS_BUFFER) restrict buffer CacheRecords { CacheRecord records[]; };
+layout(std430, binding = CACHE_LIST_BUFFER) readonly restrict buffer CacheLit { uint lit[]; };
 uniform uint last;              // 1: after this dispatch records have all their light
 uniform uint firstGroup;       // of `lit`
 uniform float areaOverDensity;  // of emissive surfaces: area that a point stands for, times the triangle's pickDensity
@@ -38,17 +38,17 @@ const uint kMostShut = 48u;           // rays that may end there
 uniform vec3 bounceMinimum;  // of cell 0, in the ray caster's coordinates
 uniform float bounceCell;    // scene units
 uniform ivec3 bounceCells;
-layout(binding = 8) uniform usamplerBuffer bounceSlots;  // per face and cell: number of its first point + 1, 0: none
-layout(binding = 13) uniform samplerBuffer bouncePlaces;  // of points; w: bits of the next layer's number + 1
+layout(binding = UNIT_CACHE_BOUNCE_SLOTS) uniform usamplerBuffer bounceSlots;  // per face and cell: number of its first point + 1, 0: none
+layout(binding = UNIT_CACHE_BOUNCE_PLACES) uniform samplerBuffer bouncePlaces;  // of points; w: bits of the next layer's number + 1
 const float kApart = 0.25;  // cells along the normal, at most, from a surface to its point
 #if LINKS
 // unordered BounceLinks: each dispatch writes those of its own points
-layout(std430, binding = 6) writeonly restrict buffer BounceLinks { uint links[]; };
+layout(std430, binding = CACHE_LINKS_BUFFER) writeonly restrict buffer BounceLinks { uint links[]; };
 // unordered BouncePlaces: likewise
 // aliased BouncePlaces: with `probes` an invocation changes its own place and reads no other; without, none writes
-layout(std430, binding = 7) restrict buffer BouncePlaces { vec4 places[]; };
+layout(std430, binding = CACHE_BOUNCED_BUFFER) restrict buffer BouncePlaces { vec4 places[]; };
 #else
-layout(binding = 9) uniform samplerBuffer bouncedLight;
+layout(binding = UNIT_CACHE_BOUNCED) uniform samplerBuffer bouncedLight;
 #endif
 
 // The point of a cell's slot in whose plane a surface lies. 0: none.

@@ -1,4 +1,4 @@
-#include "shared/path_sampler.hpp"
+#include "pathtracer/path_sampler.hpp"
 
 #include "base/error.hpp"
 #include "base/hash.hpp"
@@ -9,7 +9,7 @@
 
 #include <limits>
 
-namespace lucerna::demo::bench {
+namespace lucerna {
 
 PathSampler::PathSampler(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
                          const Camera& camera, glm::ivec2 size, Transport transport, bool allMaterials, int bounces)
@@ -87,4 +87,4 @@ Image albedoPicture(const gl::Context& context, gl::ProgramLibrary& programs, co
   return seenLights(context, programs, shining, camera, size);
 }
 
-}  // namespace lucerna::demo::bench
+}  // namespace lucerna

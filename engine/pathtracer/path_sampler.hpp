@@ -2,17 +2,17 @@
 // all materials are requested, and camera rays through pixel centres as in forward shading.
 #pragma once
 
-#include "shared/commands.hpp"
+#include "gl/context.hpp"
+#include "gl/program.hpp"
 #include "measure/reference.hpp"
+#include "scene/scene.hpp"
 
 #include <memory>
 #include <string>
 
 namespace lucerna {
-class PathTracer;
-}
 
-namespace lucerna::demo::bench {
+class PathTracer;
 
 class PathSampler {
  public:
@@ -52,4 +52,4 @@ Image seenLights(const gl::Context& context, gl::ProgramLibrary& programs, const
 Image albedoPicture(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Camera& camera,
                     glm::ivec2 size);
 
-}  // namespace lucerna::demo::bench
+}  // namespace lucerna
