@@ -30,8 +30,8 @@ gl::Texture textureOf(const std::string& name, const Image& image) {
   return texture;
 }
 
-// The settings are those of engine/pathtracer/path_sampler.cpp, so that both give the same picture; another seed makes it
-// independent of the cached samples.
+// The settings are those of engine/pathtracer/path_sampler.cpp, so that both give the same picture; another seed makes
+// it independent of the cached samples.
 LiveReference::LiveReference(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
                              glm::ivec2 size, Component component)
     : context_(context),

@@ -38,8 +38,10 @@ const uint kMostShut = 48u;           // rays that may end there
 uniform vec3 bounceMinimum;  // of cell 0, in the ray caster's coordinates
 uniform float bounceCell;    // scene units
 uniform ivec3 bounceCells;
-layout(binding = UNIT_CACHE_BOUNCE_SLOTS) uniform usamplerBuffer bounceSlots;  // per face and cell: number of its first point + 1, 0: none
-layout(binding = UNIT_CACHE_BOUNCE_PLACES) uniform samplerBuffer bouncePlaces;  // of points; w: bits of the next layer's number + 1
+// per face and cell: number of its first point + 1, 0: none
+layout(binding = UNIT_CACHE_BOUNCE_SLOTS) uniform usamplerBuffer bounceSlots;
+// of points; w: bits of the next layer's number + 1
+layout(binding = UNIT_CACHE_BOUNCE_PLACES) uniform samplerBuffer bouncePlaces;
 const float kApart = 0.25;  // cells along the normal, at most, from a surface to its point
 #if LINKS
 // unordered BounceLinks: each dispatch writes those of its own points
