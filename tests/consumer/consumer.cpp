@@ -6,6 +6,7 @@
 #include <gl/context.hpp>
 #include <gl/program.hpp>
 #include <host/host.hpp>
+#include <lpv/settings.hpp>
 #include <render/renderer.hpp>
 #include <scene/scene.hpp>
 
@@ -26,10 +27,10 @@ void draw(const std::filesystem::path& sceneFile, const std::filesystem::path& o
   lucerna::gl::ProgramLibrary programs;  // the installed shaders
 
   lucerna::RenderSettings settings;
-  settings.technique = lucerna::"lpv";
+  settings.technique = "lpv";
   settings.size = {96, 64};
   settings.fullFloatTarget = true;
-  settings.of<LpvSettings>().cascades.cells = 16;
+  settings.of<lucerna::LpvSettings>().cascades.cells = 16;
   lucerna::Renderer renderer(context, programs, scene, settings);
   renderer.render(scene.cameras.front());
   renderer.drain();
