@@ -15,7 +15,6 @@ namespace lucerna {
 
 namespace {
 
-// GL_SHADER_STORAGE_BUFFER
 constexpr std::uint32_t kSegmentsOfAll = 64;  // of a path that meets no records; it misses a share of albedo^64
 constexpr std::uint32_t kSoftwareIterations = 2000,
                         kMostIterations = 1u << 16;  // like the path tracer's, less one segment
@@ -98,7 +97,7 @@ IrradianceCache::IrradianceCache(gl::ProgramLibrary& programs, const gl::Capabil
   constants_ = gl::Buffer("cache record constants", sizeof(shared::CacheConstants), nullptr, gl::Usage::dynamicDraw);
   pathConstants_ = gl::Buffer("cache path constants", sizeof(shared::PathConstants), nullptr, gl::Usage::dynamicDraw);
   const gl::Sampling linear{gl::Filter::linear, gl::Filter::linear, gl::Wrap::border};
-  irradiance_ = gl::Texture("cache received irradiance", settings.fullFloat ? gl::Format::rgba32f : gl::Format::rgba16f,
+  irradiance_ = gl::Texture("cache irradiance", settings.fullFloat ? gl::Format::rgba32f : gl::Format::rgba16f,
                             glm::ivec3(settings.cascades.cells, settings.cascades.cells, layers), linear);
   // An empty list is one point long: mark always has it bound.
   prefetchPoints_ = gl::Buffer("cache prefetch points",

@@ -1,5 +1,5 @@
-// Records: irradiance stored at surface points, in the cascades of the light propagation volume, gathered from the
-// lights' maps or found by paths.
+// Records: irradiance stored at surface points, in nested grids (engine/cascades), gathered from the lights' maps or
+// found by paths.
 //
 // Irradiance along a surface is smooth even in a corner, where a field of radiance in space is not; so surface points
 // are interpolated. Each cell of each cascade has six slots, one per axis and sign; a slot holds one real point that
@@ -147,7 +147,7 @@ class IrradianceCache {
   gl::Buffer constants_, pathConstants_, lit_, prefetchPoints_;
   std::array<gl::Buffer, 2> records_, work_;  ///< the second of each: before the cascades moved
   gl::BufferTexture slotTable_, keys_, seen_;
-  gl::Texture irradiance_;
+  gl::Texture irradiance_;  ///< cacheIrradiance in GLSL: as looked up
   std::unique_ptr<gl::ReadBackRing> ring_;
   Counts counts_;
 };

@@ -48,7 +48,7 @@ class IrradianceCacheFrame final : public FrameTechnique {
   Image gatheredAtPixels() const {
     return cache_.gatheredAtPixels(maps_ ? maps_->outputs() : std::vector<ReflectiveShadowMap::Outputs>{});
   }
-  /// `cascades`: of the cells, blended over `blendBand` (engine/lpv).
+  /// `cascades`: of the cells, blended over `blendBand`, as of a light propagation volume.
   Image readFromCells(const CascadeSettings& cascades, float blendBand, int paths) const;
 
  private:

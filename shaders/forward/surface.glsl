@@ -5,7 +5,8 @@
 //
 // A technique's own fragment shader (shaders/NAME/surface.frag) includes this file last. It defines before:
 //   #define INDIRECT 1   or 0, and then not the function
-//   vec3 indirectIrradiance(vec3 position, vec3 normal, vec3 meshNormal)   W per square scene unit
+//   vec3 indirectIrradiance(vec3 position, vec3 normal, vec3 meshNormal)   W per square scene unit; all light but that
+//     of sun, spot and omnidirectional lights: the irradiance cache includes the sky and emissive surfaces
 // normal: for shading, possibly normal-mapped; meshNormal: the mesh's own; both on the viewer's side. And with a flag:
 //   INDIRECT_SPECULAR: vec3 indirectSpecular(position, normal, toCamera, albedo, specular, shininess)   radiance
 //   SHOW_REFUSED: bool indirectIsRefused()   whether to paint the pixel red

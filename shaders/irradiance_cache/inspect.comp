@@ -40,7 +40,7 @@ void main() {
       float share = inspectedNormal[axis] * inspectedNormal[axis] * near.x * near.y * near.z * weights[k] /
                     (there[k] * sum);
       if (!(share > 0.0) || any(lessThan(cell, ivec3(0))) || any(greaterThanEqual(cell, ivec3(cells)))) continue;
-      vec4 held = texelFetch(cacheTexture, cell + ivec3(0, 0, (k * CACHE_FACES + face) * cells), 0);
+      vec4 held = texelFetch(cacheIrradiance, cell + ivec3(0, 0, (k * CACHE_FACES + face) * cells), 0);
       uint slot = texelFetch(cacheSlots, slotOf(k, face, cell + cache.firstCell[k].xyz)).x;
       if (!(held.w > 0.0) || slot == 0u || slot > cache.capacity) continue;
       tellPart(InspectedPart(share * cacheUnit() * held.rgb, share * held.w, records[slot - 1u].position,

@@ -4,7 +4,7 @@
 #include "shared/bindings.h"
 #include "irradiance_cache/common.glsl"
 #include "irradiance_cache/cascade_weight.glsl"
-layout(binding = UNIT_CACHE) uniform sampler3D cacheTexture;  // faces of cascades stacked along z
+layout(binding = UNIT_CACHE) uniform sampler3D cacheIrradiance;  // faces of cascades stacked along z
 
 // Position for a lookup in a cascade, in cells of one face.
 vec3 cachePlace(int k, vec3 position) {
@@ -21,7 +21,7 @@ vec4 cachedInCascade(int k, vec3 position, vec3 normal) {
   vec4 sum = vec4(0.0);
   for (int axis = 0; axis < 3; ++axis) {
     float layer = float(k * CACHE_FACES + faceOf(axis, normal[axis])) / float(grids.shape.y * CACHE_FACES);
-    sum += normal[axis] * normal[axis] * textureLod(cacheTexture, uvw + vec3(0.0, 0.0, layer), 0.0);
+    sum += normal[axis] * normal[axis] * textureLod(cacheIrradiance, uvw + vec3(0.0, 0.0, layer), 0.0);
   }
   return sum;
 }

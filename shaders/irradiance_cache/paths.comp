@@ -29,7 +29,7 @@ layout(std140, binding = BLOCK_CACHE_PATHS) uniform PathBlock { PathConstants tr
 layout(std430, binding = CACHE_RECORDS_BUFFER) restrict buffer CacheRecords { CacheRecord records[]; };
 #include "irradiance_cache/work.glsl"
 layout(std430, binding = CACHE_WORK_BUFFER) readonly restrict buffer CacheWorkBlock { CacheWork work; };
-#include "irradiance_cache/surface.glsl"
+#include "irradiance_cache/record_surface.glsl"
 layout(std430, binding = CACHE_LIST_BUFFER) readonly restrict buffer CacheLit { uint lit[]; };
 uniform uint firstGroup;  // of a part of `lit`
 shared vec3 found[CACHE_LANES];

@@ -7,7 +7,7 @@ layout(local_size_x = 64) in;
 #include "irradiance_cache/work.glsl"
 layout(std430, binding = CACHE_WORK_BUFFER) readonly restrict buffer CacheWorkBlock { CacheWork work; };
 layout(std430, binding = CACHE_RECORDS_BUFFER) restrict buffer CacheRecords { CacheRecord records[]; };
-layout(GRID_FORMAT, binding = 0) writeonly uniform image3D cacheTexture;
+layout(GRID_FORMAT, binding = 0) writeonly uniform image3D cacheIrradiance;
 #include "irradiance_cache/neighbours.glsl"
 uniform uint enoughPaths;  // a CACHE_FIRST record follows its estimate without limit until it has this many
 // largest change per frame of the shown irradiance, relative to what it is or a quarter of its target; 0: no limit
@@ -64,6 +64,6 @@ void main() {
   ivec3 place = record.cell.xyz - cache.firstCell[cascade].xyz;
   if (any(lessThan(place, ivec3(0))) || any(greaterThanEqual(place, ivec3(grids.shape.x)))) return;
   show(index, record, withNeighbours(record));
-  imageStore(cacheTexture, ivec3(place.xy, record.cell.w * grids.shape.x + place.z),
+  imageStore(cacheIrradiance, ivec3(place.xy, record.cell.w * grids.shape.x + place.z),
              record.blendWeight * vec4(record.shown / cacheUnit(), 1.0));
 }

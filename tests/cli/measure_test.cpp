@@ -199,7 +199,7 @@ TEST_F(Measure, BenchErrorReportsAndGoesOnWhereItWas) {
                 2, {"another bench", "out"});
 }
 
-TEST_F(Measure, PicturesThatAreAskedForAndFloors) {
+TEST_F(Measure, PicturesThatAreAskedForAndBounds) {
   const std::string bench = "bench error '" + path("scene.obj") +
                             "' --size 32x16 --reference-spp 2048 --frames 1 --out '" + path("out") + "' --json '" +
                             path("error.json") + "' ";
@@ -210,17 +210,17 @@ TEST_F(Measure, PicturesThatAreAskedForAndFloors) {
   EXPECT_EQ(rows.size(), 7u);
   ASSERT_TRUE(rows.contains("rsm samples=20 rsm.interpolate=off") || rows.contains("rsm samples=20 interpolate=off"));
   for (const char* of : {"lpv", "irradiance-cache transport=gather bounces=1"}) {
-    const std::string floor = std::string(of) + ", floor: the map at each pixel";
-    ASSERT_TRUE(rows.contains(of) && rows.contains(floor)) << of;
+    const std::string bound = std::string(of) + ", bound: the map at each pixel";
+    ASSERT_TRUE(rows.contains(of) && rows.contains(bound)) << of;
     const auto inside = [&](const std::string& label) { return rows.at(label).at("inside_model"); };
-    EXPECT_EQ(inside(of).at("model"), inside(floor).at("model"));
+    EXPECT_EQ(inside(of).at("model"), inside(bound).at("model"));
     // Gathering at each pixel is far better than propagation. Here it is as good as gathering in cells, since a plain
     // wall needs no finer ones. All light is the technique's direct light plus what is measured.
     const double most = std::string_view(of) == "lpv" ? 0.2 : 1.25;
-    EXPECT_LT(inside(floor).at("l2").get<double>(), most * inside(of).at("l2").get<double>()) << of;
-    EXPECT_LT(rows.at(floor).at("l2").get<double>(), 0.5) << of;
+    EXPECT_LT(inside(bound).at("l2").get<double>(), most * inside(of).at("l2").get<double>()) << of;
+    EXPECT_LT(rows.at(bound).at("l2").get<double>(), 0.5) << of;
   }
-  EXPECT_TRUE(rows.contains("lpv, floor: exact radiance in the cells"));
+  EXPECT_TRUE(rows.contains("lpv, bound: exact radiance in the cells"));
   EXPECT_NE(report.at("command").get<std::string>().find("--bounds --point"), std::string::npos);
   expectOneLine(RUN_LUCERNA(bench + "--point 'smoke a=1'"), 2, {"--point", "smoke", "rsm"});
   expectOneLine(RUN_LUCERNA(bench + "--point 'rsm rsm.samplez=1'"), 2, {"rsm.samplez"});

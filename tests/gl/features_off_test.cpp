@@ -166,7 +166,7 @@ TEST_F(FeaturesOff, EachTransportLeavesTheOthersStagesOut) {
   Scene scene = test::openBox();
   const Made propagated = draw(propagate, Component::all, scene), traced = draw(rays, Component::all, scene);
   for (const char* part :
-       {"cache list records", "cache paths", "cacheTexture", "TriangleBlock", "visibleDepth", "PathBlock"}) {
+       {"cache list records", "cache paths", "cacheIrradiance", "TriangleBlock", "visibleDepth", "PathBlock"}) {
     EXPECT_FALSE(has(propagated.programs, part)) << part << " in\n" << propagated.programs;
     EXPECT_TRUE(has(traced.programs, part)) << part << " in\n" << traced.programs;
   }

@@ -31,7 +31,7 @@ uniform float rayEnd;  // by which a ray ends before its point, along the point'
 #endif
 #include "irradiance_cache/common.glsl"
 #if VISIBILITY
-#include "irradiance_cache/surface.glsl"
+#include "irradiance_cache/record_surface.glsl"
 #endif
 #if PERSPECTIVE
 const float kPi = 3.14159265358979;

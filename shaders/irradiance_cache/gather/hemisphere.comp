@@ -19,7 +19,7 @@ layout(std140, binding = BLOCK_CACHE_PATHS) uniform PathBlock { PathConstants tr
 #include "rays/bvh.glsl"
 #include "rays/environment.glsl"
 #include "irradiance_cache/common.glsl"
-#include "irradiance_cache/surface.glsl"
+#include "irradiance_cache/record_surface.glsl"
 // unordered CacheRecords: each dispatch changes the records of its own part of the list
 layout(std430, binding = CACHE_RECORDS_BUFFER) restrict buffer CacheRecords { CacheRecord records[]; };
 layout(std430, binding = CACHE_LIST_BUFFER) readonly restrict buffer CacheLit { uint lit[]; };

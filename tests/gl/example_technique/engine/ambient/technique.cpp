@@ -4,6 +4,7 @@
 // L = albedo / pi * E of every surface, beside its direct light; E: W per square scene unit, for each channel.
 #include "base/angles.hpp"
 #include "frame/technique.hpp"
+#include "shared/bindings.h"
 
 namespace lucerna {
 
@@ -29,7 +30,7 @@ class Ambient final : public FrameTechnique {
         constants_("ambient", sizeof(glm::vec4), &irradiance_, gl::Usage::staticDraw) {}
 
   std::string surfaceShader() const override { return "ambient/surface.frag"; }
-  void bindForShading() const override { constants_.bindUniform(1); }
+  void bindForShading() const override { constants_.bindUniform(BLOCK_CASCADES); }  // free: there are no grids
   void addShares(const InspectedPixel&, PixelInspection& answer) override {
     answer.add("ambient", "the same everywhere", answer.surface->albedo / kPi * static_cast<double>(irradiance_.x),
                {answer.surface->position});
