@@ -1,15 +1,15 @@
-// Debug views that no technique draws. Two count for each pixel: the surfaces in it (overdraw) and the nodes of the
-// hierarchy that its ray visits. Three are drawn in the scene: the light in a propagation volume's cells as lobes,
-// records as disks. Their programs and buffers are made at first use and dropped with the view.
+// Debug views that no technique draws. They count for each pixel the surfaces in it (overdraw) or the nodes of the
+// hierarchy that its ray visits. Their programs and buffers are made at first use and dropped with the view.
 #pragma once
 
 #include "forward/gpu_scene.hpp"
 #include "gl/context.hpp"
-#include "gl/lines.hpp"
+#include "gl/program.hpp"
 #include "rays/ray_scene.hpp"
-#include "render/renderer.hpp"
 
+#include <array>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 namespace lucerna::demo {
@@ -48,16 +48,5 @@ class CountViews {
   glm::mat4 clip_{0.0f};
   std::vector<float> counts_;
 };
-
-/// The views that are drawn in the scene as lines.
-enum class Glyphs { none, lobes, geometry, records };
-constexpr std::array<std::string_view, 4> kGlyphNames{"nothing", "lobes of cells", "geometry volume", "cache records"};
-
-/// Lines relative to the renderer's origin(), empty if its technique has nothing of the kind. Lobes show intensity by
-/// direction in the `most` brightest cells of a cascade; the largest is half a cell long. Records show at most `most`
-/// of a cascade's records that are in the picture, as disks on their surfaces in the colour of their irradiance; the
-/// choice stays the same while the camera moves. Reads textures back, so it waits for the GPU.
-std::vector<gl::Lines::Line> glyphsOf(Glyphs glyphs, const Renderer& renderer, const Scene& scene, const Camera& camera,
-                                      int cascade, int most);
 
 }  // namespace lucerna::demo

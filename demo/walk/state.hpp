@@ -3,6 +3,7 @@
 #pragma once
 
 #include "shared/commands.hpp"
+#include "shared/glyphs.hpp"
 #include "scene/key_frames.hpp"
 #include "walk/compare.hpp"
 #include "walk/free_camera.hpp"

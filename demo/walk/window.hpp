@@ -9,7 +9,7 @@
 #include "walk/keys.hpp"
 #include "walk/options.hpp"
 #include "walk/renderdoc.hpp"
-#include "walk/stage_view.hpp"
+#include "shared/stage_view.hpp"
 #include "walk/state.hpp"
 #include "walk/ui.hpp"
 #include "walk/video.hpp"

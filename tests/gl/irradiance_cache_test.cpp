@@ -24,7 +24,7 @@
 #include "support/long_tests.hpp"
 #include "support/path_scenes.hpp"
 #include "support/pixel_rays.hpp"
-#include "walk/scene_views.hpp"
+#include "shared/glyphs.hpp"
 
 #include <fmt/format.h>
 
@@ -1435,7 +1435,7 @@ TEST_F(IrradianceCacheKept, TinyAndHugeGridsAreDrawn) {
 }
 
 // The window's debug view draws a disk on each record: at its place in the picture, in the colour of its irradiance,
-// and nowhere else. demo/walk/scene_views.cpp.
+// and nowhere else. demo/shared/glyphs.cpp.
 TEST_F(IrradianceCacheGl, AreDrawnAsDisksWhereTheyAre) {
   const glm::dvec3 albedo(0.5, 0.5, 0.5), emission(1.0, 0.5, 0.1);
   const Scene scene = furnace(glm::vec3(albedo), glm::vec3(emission));

@@ -1,4 +1,4 @@
-#include "walk/stage_view.hpp"
+#include "shared/stage_view.hpp"
 
 #include "base/statistics.hpp"
 #include "gl/draw.hpp"
@@ -27,7 +27,7 @@ Shape shapeOf(const StagePicture& picture) {
 
 }  // namespace
 
-const gl::Texture& StageView::record(const StagePicture& picture, int layer, float factor, const Bounds& bounds) {
+void StageView::draw(const StagePicture& picture, int layer, float factor, const Bounds& bounds) {
   const gl::Texture* texture = picture.texture;
   // Shadow maps are comparison textures, whose depths cannot be read directly: copy them first.
   if (picture.kind == StagePicture::Kind::depth && shapeOf(picture) == flat) {
@@ -41,31 +41,36 @@ const gl::Texture& StageView::record(const StagePicture& picture, int layer, flo
     const std::array<const gl::Texture*, 1> colors{&result_};
     target_ = gl::Framebuffer("stage view", colors);
   }
-  const auto draw = [&](float by) {
-    const gl::Program& program =
-        programs_.loadRaster("stage view", "lib/fullscreen.vert", "walk/stage.frag", {{"SHAPE", shapeOf(picture)}});
-    const gl::RasterPass pass("stage view", target_, {});
-    program.use();
-    texture->bind(0);
-    if (picture.green) picture.green->bind(1), picture.blue->bind(2);
-    program.set("layer", std::clamp(layer, 0, texture->size().z - 1));
-    program.set("kind", static_cast<int>(picture.kind));
-    program.set("factor", by);
-    program.set("minimum", glm::vec3(bounds.min));
-    program.set("extent", glm::max(glm::vec3(bounds.extent()), glm::vec3(1e-30f)));
-    gl::drawFullScreen(noAttributes_);
-  };
+  const gl::Program& program =
+      programs_.loadRaster("stage view", "lib/fullscreen.vert", "walk/stage.frag", {{"SHAPE", shapeOf(picture)}});
+  const gl::RasterPass pass("stage view", target_, {});
+  program.use();
+  texture->bind(0);
+  if (picture.green) picture.green->bind(1), picture.blue->bind(2);
+  program.set("layer", std::clamp(layer, 0, texture->size().z - 1));
+  program.set("kind", static_cast<int>(picture.kind));
+  program.set("factor", factor);
+  program.set("minimum", glm::vec3(bounds.min));
+  program.set("extent", glm::max(glm::vec3(bounds.extent()), glm::vec3(1e-30f)));
+  gl::drawFullScreen(noAttributes_);
+}
+
+const gl::Texture& StageView::recordUnscaled(const StagePicture& picture, int layer, const Bounds& bounds) {
+  draw(picture, layer, 1.0f, bounds);
+  return result_;
+}
+
+const gl::Texture& StageView::record(const StagePicture& picture, int layer, float factor, const Bounds& bounds) {
   // Light has no fixed scale: of the lit texels, one in ten becomes brighter than white.
   const std::string measured = fmt::format("{} {}", picture.name, layer);
   if (picture.isLight() && measured != measured_) {
-    draw(1.0f);
     std::vector<double> lit;
-    for (const glm::vec4& texel : result_.readRgba())
+    for (const glm::vec4& texel : recordUnscaled(picture, layer, bounds).readRgba())
       if (const float most = std::max({texel.x, texel.y, texel.z}); most > 0.0f) lit.push_back(most);
     usualFactor_ = lit.empty() ? 1.0f : static_cast<float>(1.0 / percentile(lit, 0.9));
     measured_ = measured;
   }
-  draw(picture.isLight() ? factor * usualFactor_ : 1.0f);
+  draw(picture, layer, picture.isLight() ? factor * usualFactor_ : 1.0f, bounds);
   return result_;
 }
 

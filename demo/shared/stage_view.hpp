@@ -16,9 +16,13 @@ class StageView {
   /// Draws it; the picture is valid until the next call. factor: scales light, relative to a brightness that suits the
   /// picture.
   const gl::Texture& record(const StagePicture& picture, int layer, float factor, const Bounds& bounds);
+  /// The same with light as it is.
+  const gl::Texture& recordUnscaled(const StagePicture& picture, int layer, const Bounds& bounds);
   static int layersOf(const StagePicture& picture) { return picture.texture->size().z; }
 
  private:
+  void draw(const StagePicture& picture, int layer, float factor, const Bounds& bounds);
+
   gl::ProgramLibrary& programs_;
   gl::VertexArray noAttributes_;
   gl::Texture copy_, result_;
