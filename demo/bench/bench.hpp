@@ -8,6 +8,7 @@ namespace lucerna::demo {
 Work addBenchRays(Command app);
 Work addBenchError(Command app);
 Work addBenchReferences(Command app);
+Work addBenchFrame(Command app);
 Work addBenchStability(Command app);
 Work addBenchFeatures(Command app);
 Work addBenchAll(Command app);

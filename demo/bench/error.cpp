@@ -55,14 +55,6 @@ std::vector<std::string> chosenTechniques(const ErrorBenchOptions& options) {
   return options.techniques;
 }
 
-/// The scene as references see it, Lambertian only: forward shading would add highlights that references lack (in the
-/// atrium 1.3 % of direct light).
-Scene withoutHighlights(Scene scene) {
-  for (Material& m : scene.materials)
-    if (m.bsdf == Bsdf::diffuse) m.specular = glm::vec3(0.0f);
-  return scene;
-}
-
 std::vector<SweepPoint> pointsOf(const ErrorBenchOptions& options, const std::vector<std::string>& techniques,
                                  const Bounds& bounds) {
   std::vector<std::string> raster;
@@ -102,6 +94,12 @@ std::string pictureCommand(const ErrorBenchOptions& options) {
 }
 
 }  // namespace
+
+Scene withoutHighlights(Scene scene) {
+  for (Material& m : scene.materials)
+    if (m.bsdf == Bsdf::diffuse) m.specular = glm::vec3(0.0f);
+  return scene;
+}
 
 void ErrorBenchOptions::declareView(Command app) {
   app.addOption("--camera", camera, "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");

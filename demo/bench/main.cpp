@@ -13,6 +13,8 @@ lucerna::demo::Work addBench(lucerna::demo::Command app) {
                addBenchRays);
   commands.add("error", "Error against run time: every technique over a sweep of settings", addBenchError);
   commands.add("references", "Only the references of bench error, optionally in parts", addBenchReferences);
+  commands.add("frame", "A frame pass by pass: a page with each pass's picture, time and the error that it removes",
+               addBenchFrame);
   commands.add("diff",
                "Two reports of bench error row by row: better, worse or undecided, by a test that uses both spreads",
                addBenchDiff);

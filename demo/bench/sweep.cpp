@@ -164,13 +164,13 @@ std::vector<SweepPoint> boundPoints() {
           of("irradiance-cache", Bound::none, {gather, once})};
 }
 
-SweepPoint parseSweepPoint(const std::string& text) {
+SweepPoint parseSweepPoint(const std::string& text, const std::string& option) {
   std::istringstream words(text);
   SweepPoint asked;
   words >> asked.picture.technique;
   const std::vector<std::string> known = sweepTechniques();
   if (std::find(known.begin(), known.end(), asked.picture.technique) == known.end())
-    throwBadInput("--point '{}': expected \"TECHNIQUE [SETTING=VALUE]...\" with one of {}", text,
+    throwBadInput("{} '{}': expected \"TECHNIQUE [SETTING=VALUE]...\" with one of {}", option, text,
                   fmt::join(known, ", "));
   for (std::string word; words >> word;) asked.picture.settings.push_back(word);
   asked.series = asked.picture.technique + " as asked";

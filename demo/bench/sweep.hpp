@@ -32,8 +32,9 @@ std::vector<std::string> sweepTechniques();
 /// Throws Error(badInput) naming an unknown technique. `shrink`: leave out the most expensive points. longestSide: of
 /// the scene, for patch sizes.
 std::vector<SweepPoint> sweepOf(const std::string& technique, bool shrink, double longestSide);
-/// "TECHNIQUE [SETTING=VALUE]...": a picture that was asked for. Throws Error(badInput) for what it cannot be.
-SweepPoint parseSweepPoint(const std::string& text);
+/// "TECHNIQUE [SETTING=VALUE]...": a picture that was asked for. Throws Error(badInput) naming the option for what it
+/// cannot be.
+SweepPoint parseSweepPoint(const std::string& text, const std::string& option = "--point");
 /// The bounds of the light propagation volume's transports.
 std::vector<SweepPoint> boundPoints();
 /// Corrected, and corrected with one deviation on at a time, for every technique that has the deviation.

@@ -1,5 +1,5 @@
-// lucerna compare, bench error|stability|needs, tune, --settings: contracts, what is refused, and that an interrupted
-// bench goes on.
+// lucerna compare, bench error|frame|stability|needs, tune, --settings: contracts, what is refused, and that an
+// interrupted bench goes on.
 #include "base/files.hpp"
 #include "base/image.hpp"
 #include "support/long_tests.hpp"
@@ -17,6 +17,7 @@
 #include <fstream>
 #include <map>
 #include <numeric>
+#include <set>
 
 namespace {
 
@@ -77,6 +78,53 @@ TEST_F(Measure, CompareSaysHowFarTwoPicturesAreApart) {
   expectOneLine(RUN_LUCERNA("compare '" + path("a.pfm") + "' '" + path("small.pfm") + "'"), 2, {"20x10", "3x3"});
   expectOneLine(RUN_LUCERNA("compare '" + path("a.pfm") + "' '" + path("b.pfm") + "' --heatmap x.jpg"), 2,
                 {"--heatmap", "png"});
+}
+
+TEST_F(Measure, FrameHasEveryPassWithItsTimeAndError) {
+  const std::string cornell = "'" LUCERNA_SOURCE_DIR "/assets/cornell/cornell.json' --size 48x27 ";
+  const std::string cache = "irradiance-cache cache.samples=64";
+  const RunResult result =
+      RUN_LUCERNA("bench frame " + cornell + "--frames 2 --reference-spp 64 --technique '" + cache +
+                  "' --technique lpv --technique rsm -o '" + path("page.md") + "' --json '" + path("frame.json") + "'");
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  const std::string page = readFileText(path("page.md"));
+  const auto report = json("frame.json");
+  EXPECT_LT(report.at("noise_l2").get<double>(), 0.1);
+  ASSERT_EQ(report.at("frames").size(), 3u);
+  for (const auto& frame : report.at("frames")) {
+    const std::string technique = frame.at("technique");
+    // The passes are those that a frame's timer reports.
+    ASSERT_EQ(RUN_LUCERNA("render " + cornell + "--technique " + technique + " --repeat 2 -o '" + path("p.png") +
+                          "' --json '" + path("render.json") + "'")
+                  .exitCode,
+              0);
+    std::set<std::string> expected, names;
+    const auto stages = json("render.json").at("stages");
+    for (const auto& [name, stage] : stages.items()) expected.insert(name);
+    for (const auto& pass : frame.at("passes")) names.insert(pass.at("name"));
+    EXPECT_EQ(names, expected) << technique;
+    const double finished = frame.at("light").back().at("l2");
+    for (const auto& pass : frame.at("passes")) {
+      EXPECT_GT(pass.at("ms").get<double>(), 0.0) << pass;
+      EXPECT_NE(page.find(". " + pass.at("title").get<std::string>() + "\n"), std::string::npos) << pass;
+      for (const std::string name : pass.at("pictures")) EXPECT_GT(readBitmap(path("page/" + name)).width, 40);
+      // lpv does not have the light of the lamp, in whose place unblocked light of the sun may come.
+      const bool mayBeWorse = pass.at("name") == "geometry volume" || pass.at("name") == "interpolation";
+      EXPECT_TRUE(mayBeWorse || pass.at("l2_without").get<double>() >= finished) << pass;
+    }
+    // From black to the finished picture the error only falls.
+    double before = 1.0;
+    for (const auto& step : frame.at("light")) {
+      EXPECT_LT(step.at("l2").get<double>(), before - 0.02) << step;
+      before = step.at("l2");
+      EXPECT_EQ(readBitmap(path("page/" + step.at("picture").get<std::string>())).width, 48);
+    }
+    EXPECT_EQ(frame.at("light").size(), 3u);  // emission, direct, indirect: nothing surrounds the box
+  }
+  EXPECT_LT(report.at("frames")[0].at("light").back().at("l2").get<double>(), 0.1);
+  expectOneLine(RUN_LUCERNA("bench frame " + cornell + "--technique radiosity -o '" + path("r.md") + "'"), 2,
+                {"--technique radiosity", "irradiance-cache"});
+  expectOneLine(RUN_LUCERNA("bench frame " + cornell + "-o '" + path("r.html") + "'"), 2, {"-o", "md"});
 }
 
 TEST_F(Measure, BenchErrorReportsAndGoesOnWhereItWas) {
