@@ -9,13 +9,10 @@
 #include "gl/build_watch.hpp"
 #include "gl/draw.hpp"
 #include "gl/pass.hpp"
-#include "irradiance_cache/irradiance_cache.hpp"
-#include "irradiance_cache/irradiance_cache_frame.hpp"
 #include "walk/ground.hpp"
 #include "walk/panel.hpp"
 #include "shared/paths.hpp"
 #include "walk/pixel_section.hpp"
-#include "walk/shots.hpp"
 
 #include <fmt/format.h>
 
@@ -37,10 +34,6 @@ constexpr double kLongestStep = 0.25;  // seconds by which the path advances in 
 constexpr int kStillFrames = 3;  // still frames before the reference of a view is started
 constexpr std::size_t kPlotFrames = 240;
 
-bool sameView(const Camera& a, const Camera& b) {
-  return a.position == b.position && a.direction == b.direction && a.up == b.up && a.verticalFov == b.verticalFov;
-}
-
 bool isPicture(const fs::path& file) {
   const std::string extension = lowerExtension(file);
   return extension == ".png" || extension == ".jpg" || extension == ".hdr" || extension == ".exr" ||
@@ -51,13 +44,17 @@ bool isPicture(const fs::path& file) {
 
 WalkWindow::WalkWindow(const WalkOptions& options, Host& host, const gl::Context& context, gl::ProgramLibrary& programs,
                        WalkState state)
-    : options_(options), host_(host), context_(context), programs_(programs), state_(std::move(state)) {
+    : options_(options),
+      host_(host),
+      context_(context),
+      programs_(programs),
+      state_(std::move(state)),
+      overlay_(programs, state_),
+      reference_(context, programs, state_),
+      recorder_(state_) {
   state_.rendererName = context.capabilities().renderer;
   if (!options.playInput.empty()) player_.emplace(options.playInput);
   playedSize_ = parseSize(options.picture.size);
-  renderDoc_ = RenderDoc::find();
-  state_.canCapture = renderDoc_.has_value();
-  state_.canRecord = Video::canBeMade();
   state_.swapAtRefresh = host.swapInterval().value_or(0) > 0;
 }
 
@@ -106,10 +103,8 @@ bool WalkWindow::takeInput() {
           0.0f, 1.0f);
   }
   const bool left = input_.buttons[static_cast<std::size_t>(MouseButton::left)];
-  if (state_.movesLamps && screen_ && !pointing &&
-      gizmo_.take(*state_.scene, *screen_, glm::vec2(input_.cursor), left)) {
+  if (!pointing && overlay_.drags(glm::vec2(input_.cursor), left)) {
     input_.mouseDelta = glm::dvec2(0.0);
-    if (gizmo_.takeMoved()) ++state_.sceneVersion;
     changed();
   } else if (state_.inspectsByClick && !pointing) {
     if (left && !leftBefore_) state_.inspectedPlace = input_.cursor;
@@ -217,7 +212,7 @@ void WalkWindow::moveCamera(double seconds) {
   } else {
     state_.camera->move(input_, std::min(seconds, 0.1));  // a slow frame must not fling the camera across the room
   }
-  if (!sameView(state_.camera->camera(), lastCamera_)) changed();
+  if (!state_.camera->camera().seesAs(lastCamera_)) changed();
   lastCamera_ = state_.camera->camera();
 }
 
@@ -380,85 +375,11 @@ bool WalkWindow::allSettled() const {
   return true;
 }
 
-// Everything counts: sampling, reading back, judging. While pictures are still changing, the reference gets at most its
-// share of the frames' own time; once they are still, all idle time.
 void WalkWindow::makeReference(double frameSeconds) {
-  constexpr double kIdleSeconds = 0.03;  // per frame, so that the panel still responds
-  constexpr double kLongestFrame = 1.0;  // longer frames are something else, such as compiling
-  if (!state_.liveReferenceOn || !state_.side().renderer) return;
-  const double share = std::clamp(static_cast<double>(state_.referenceShare), 0.01, 0.9);
-  const double submission = state_.reference ? state_.reference->submissionSeconds() : 0.0;
-  referenceTime_.frame(frameSeconds, share, std::max(4.0 * submission, share * std::min(frameSeconds, kLongestFrame)));
-  if (still_ < kStillFrames) return;
-  const bool idle = allSettled();
-  if (!idle && referenceTime_.left() < submission) return;
-  gl::finish();  // the picture's work must not count as the reference's
-  auto start = Clock::now();
-  if (seekReference()) start = Clock::now();  // compiling happens once and is not counted
-  if (state_.reference) state_.reference->advance(idle ? kIdleSeconds : referenceTime_.left());
-  judge();
-  if (idle) referenceTime_.idle(secondsSince(start));
-  else referenceTime_.spend(secondsSince(start));
-}
-
-/// Provides the path tracer for the current view. Returns whether it had to be made.
-bool WalkWindow::seekReference() {
-  bool made = false;
-  const SideState& shown = state_.side();
-  const glm::ivec2 size = shown.renderer->size();
-  const Component component = shown.renderer->settings().component;
-  if (!state_.reference || state_.reference->size() != size || state_.reference->component() != component ||
-      referenceVersion_ != state_.sceneVersion) {
-    try {
-      breathe("making the path tracer");
-      const gl::BuildWatch watch([this](const std::string& name) { breathe("compiling " + name); });
-      state_.reference.reset();
-      state_.reference = std::make_unique<LiveReference>(context_, programs_, *state_.scene, size, component);
-      referenceVersion_ = state_.sceneVersion;
-      referenceCamera_.reset();
-      made = true;
-    } catch (const Error& error) {
-      state_.liveReferenceOn = false;
-      state_.say(error.what());
-    } catch (const Stopped&) { state_.liveReferenceOn = false; }
-    if (!state_.reference) return made;
-  }
-  if (!referenceCamera_ || !sameView(*referenceCamera_, state_.camera->camera())) {
-    referenceCamera_ = state_.camera->camera();
-    state_.reference->look(*referenceCamera_);
-    for (SideState& side : state_.sides) side.judgement.clear(), side.judgedReference = 0;
-  }
-  return made;
-}
-
-// At most twice a second, since pictures are read back.
-void WalkWindow::judge() {
-  if (!state_.reference || !state_.reference->ready()) return;
-  for (SideState& side : state_.sides) side.judgement.flip();  // takes up its FLIP picture once that is computed
-  const double since = player_ ? kPlayedFrame * (frames_ - judgedFrame_) : secondsSince(judged_);
-  if (since < 0.5) return;
-  judged_ = Clock::now();
-  judgedFrame_ = frames_;
-  for (int i = 0; i < 2; ++i) {
-    SideState& side = state_.sides[static_cast<std::size_t>(i)];
-    if (!state_.isVisible(i) || side.shows == Shows::reference) continue;
-    if (side.judgedReference == state_.reference->version() && side.judgedPicture == side.pictureVersion) continue;
-    side.judgedReference = state_.reference->version();
-    side.judgedPicture = side.pictureVersion;
-    if (side.shows == Shows::picture) {
-      if (!side.picture || side.picture->size2d() != state_.reference->size()) continue;
-      const std::vector<glm::vec4> texels = side.picture->readRgba();
-      Image image(side.picture->size().x, side.picture->size().y);
-      for (int y = 0; y < image.height; ++y)
-        for (int x = 0; x < image.width; ++x)
-          image.at(x, image.height - 1 - y) =
-              glm::vec3(texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
-                               static_cast<std::size_t>(x)]);
-      side.judgement.judge(std::move(image), state_.reference->reference(), allSettled());
-    } else if (side.renderer && side.renderer->size() == state_.reference->size()) {
-      side.judgement.judge(side.renderer->readRadiance(), state_.reference->reference(), allSettled());
-    }
-  }
+  const double now =
+      player_ ? kPlayedFrame * frames_ : std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
+  reference_.doShare(frameSeconds,
+                     {still_ >= kStillFrames, allSettled(), now, [this](const std::string& what) { breathe(what); }});
 }
 
 void WalkWindow::readPixel(const Compare::Inputs& inputs) {
@@ -501,53 +422,6 @@ void WalkWindow::inspectPixel(const Compare::Inputs& inputs) {
   }
 }
 
-// Rebuilt when the camera or their source has changed.
-void WalkWindow::drawGlyphs(const Compare::Inputs& inputs) {
-  const SideState& side = state_.side();
-  if (state_.glyphs == Glyphs::none || !side.renderer || side.shows == Shows::picture) return;
-  const Camera& camera = state_.camera->camera();
-  const IrradianceCache* cache = cacheOf(side.renderer->technique());  // their light changes from frame to frame
-  const std::string are = fmt::format("{} {} {} {} {} {} {}", static_cast<int>(state_.glyphs), side.builtAs,
-                                      state_.glyphCascade, state_.glyphMost, cameraText(camera), state_.shown,
-                                      state_.glyphs == Glyphs::records && cache ? cache->frame() : 0);
-  if (are != glyphsAre_)
-    glyphs_ = glyphsOf(state_.glyphs, *side.renderer, *state_.scene, camera, state_.glyphCascade, state_.glyphMost);
-  glyphsAre_ = are;
-  if (!lines_) lines_.emplace(programs_);
-  lines_->draw(pictureTarget_, Compare::placementOf(inputs, view_, inputs.layout != Layout::one && state_.shown == 1),
-               side.renderer->linesView(camera, state_.scene->bounds), glyphs_, host_.contentScale());
-}
-
-void WalkWindow::drawGizmo(const Compare::Inputs& inputs) {
-  const SideState& side = state_.side();
-  screen_.reset();
-  if (!state_.movesLamps || !side.renderer) return;
-  const Renderer& renderer = *side.renderer;
-  screen_ =
-      Gizmo::Screen{Compare::placementOf(inputs, view_, inputs.layout != Layout::one && state_.shown == 1),
-                    renderer.linesView(state_.camera->camera(), state_.scene->bounds), renderer.origin(), window_.y};
-  if (!lines_) lines_.emplace(programs_);
-  gl::Lines::View view = screen_->view;
-  view.depth = nullptr;  // a lamp behind a wall can be grabbed too
-  lines_->draw(pictureTarget_, screen_->placement, view, gizmo_.lines(*state_.scene, renderer.origin()),
-               3.0f * host_.contentScale());
-}
-
-// Drawn over the picture of its side and hidden by the surfaces in that picture.
-void WalkWindow::drawLines(const Compare::Inputs& inputs) {
-  if (!state_.answer || !state_.drawsAnswer) return;
-  const bool right = inputs.layout != Layout::one && state_.inspectedSide == 1;
-  if (inputs.layout == Layout::one && state_.inspectedSide != state_.shown) return;
-  const SideState& side = state_.sides[static_cast<std::size_t>(state_.inspectedSide)];
-  if (!side.renderer || side.shows == Shows::picture) return;
-  const Renderer& renderer = *side.renderer;
-  const gl::Lines::View view = renderer.linesView(state_.camera->camera(), state_.scene->bounds);
-  if (!lines_) lines_.emplace(programs_);
-  lines_->draw(pictureTarget_, Compare::placementOf(inputs, view_, right), view,
-               linesOf(*state_.answer, state_.pointedShare, renderer.origin(), state_.scene->bounds),
-               1.5f * host_.contentScale());
-}
-
 void WalkWindow::compose() {
   SideState& shown = state_.side();
   const bool referenceThere =
@@ -561,7 +435,8 @@ void WalkWindow::compose() {
                      radianceOf(state_.shown) == (shown.renderer ? &shown.renderer->radiance() : nullptr) &&
                      shown.renderer && shown.renderer->size() == view_;
   presented_ = plain && !drawsUi() && !state_.shotWanted && !state_.inspectedPlace && !state_.answer &&
-               !state_.records && state_.glyphs == Glyphs::none && !state_.movesLamps && !video_ && view_ == window_;
+               !state_.records && state_.glyphs == Glyphs::none && !state_.movesLamps && !recorder_.isRecording() &&
+               view_ == window_;
   if (presented_) {
     host_.present(shown.renderer->displayFramebuffer().id(), window_);
     return;
@@ -620,89 +495,8 @@ void WalkWindow::compose() {
   else if (inputs.left.radiance) compare_->record(pictureTarget_, view_, inputs);
   readPixel(inputs);
   inspectPixel(inputs);
-  drawGlyphs(inputs);
-  drawGizmo(inputs);
-  drawLines(inputs);
-  if (state_.shotWanted) takeShot();
-}
-
-/// Reads the presented picture: `size` pixels from the upper left corner of the window.
-Bitmap WalkWindow::shownPicture(glm::ivec2 size) const {
-  const std::vector<glm::vec4> texels = picture_.readRgba();
-  Bitmap bitmap;
-  bitmap.width = size.x;
-  bitmap.height = size.y;
-  for (int y = size.y - 1; y >= 0; --y)
-    for (int x = 0; x < size.x; ++x)
-      for (int c = 0; c < 4; ++c)
-        bitmap.rgba.push_back(static_cast<std::uint8_t>(
-            std::lround(255.0f * texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(window_.x) +
-                                        static_cast<std::size_t>(x)][c])));
-  return bitmap;
-}
-
-void WalkWindow::takeShot() {
-  state_.shotWanted = false;
-  const SideState& side = state_.side();
-  try {
-    std::error_code ignored;
-    fs::create_directories(state_.shotFolder, ignored);
-    const fs::path stem = freeName(state_.shotFolder, state_.scene->name);
-    std::string note = fmt::format("Lucerna {} on {}\n{} --camera {} --size {}x{}\nexposure {:.6g}", LUCERNA_VERSION,
-                                   state_.rendererName, commandLine("render", state_.scene->file.string(), side.built),
-                                   cameraText(state_.camera->camera()), side.renderer->size().x,
-                                   side.renderer->size().y, state_.exposure);
-    if (side.judgement.known())
-      note += fmt::format("\nrelative error {:.4g}, {:.4g} to {:.4g} (99 %), against {} path-traced samples a pixel",
-                          side.judgement.nrmse().value, side.judgement.nrmse().low, side.judgement.nrmse().high,
-                          state_.reference ? state_.reference->samples() : 0);
-    writePngWithNote(stem.string() + ".png", shownPicture(view_), note);
-    if (side.renderer) writeHdrWithNote(stem.string() + ".hdr", side.renderer->readRadiance(), note);
-    state_.say(fmt::format("{}.png and .hdr written", stem.string()));
-  } catch (const Error& error) { state_.say(error.what()); }
-}
-
-void WalkWindow::recordVideo(double seconds) {
-  const auto end = [&] {
-    const bool whole = video_->finish();
-    state_.say(whole ? fmt::format("{}: {} pictures", video_->file().string(), video_->pictures())
-                     : fmt::format("{0} is not whole; what ffmpeg says is in {0}.log", video_->file().string()));
-    video_.reset();
-    state_.records = false;
-    state_.recording.clear();
-  };
-  if (video_ && (!state_.records || video_->size() != view_)) end();
-  if (!state_.records) return;
-  try {
-    if (!video_) {
-      std::error_code ignored;
-      fs::create_directories(state_.shotFolder, ignored);
-      video_.emplace(freeName(state_.shotFolder, state_.scene->name + "_video", {".mp4"}).string() + ".mp4", view_);
-      state_.say(fmt::format("recording {}", video_->file().string()));
-    }
-    if (!video_->add(shownPicture(view_), seconds)) {
-      end();
-      return;
-    }
-    state_.recording = fmt::format("recording {}: {:.1f} s", video_->file().string(),
-                                   static_cast<double>(video_->pictures()) / Video::kPicturesASecond);
-  } catch (const Error& error) {
-    state_.records = false;
-    state_.say(error.what());
-  }
-}
-
-void WalkWindow::beginCapture() {
-  captures_ = std::exchange(state_.captureWanted, false) || frames_ == options_.capture;
-  if (!captures_) return;
-  if (renderDoc_) renderDoc_->begin();
-  else state_.say("RenderDoc is missing: install it and start with walk --capture N");
-}
-
-void WalkWindow::endCapture() {
-  if (!captures_ || !renderDoc_) return;
-  const auto file = renderDoc_->end();
-  state_.say(file ? fmt::format("RenderDoc: {}", *file) : "RenderDoc saw no frame on this host");
+  overlay_.draw({pictureTarget_, inputs, view_, window_.y, host_.contentScale()});
+  if (state_.shotWanted) recorder_.takeShot(shownPicture());
 }
 
 // ---------------------------------------------------------------------------------------------------- presenting
@@ -793,20 +587,20 @@ void WalkWindow::run() {
     makeReady();
     if (stop_) break;
     moveCamera(dt);
-    beginCapture();
+    recorder_.beginCapture(frames_ == options_.capture);
     draw();
     makeReference(measured);
     compose();
-    recordVideo(dt);
+    recorder_.record(shownPicture(), dt);
     if (drawsUi()) {
       drawUi(input_, dt, "", -1.0);
       if (player_)
-        if (const auto file = player_->takeSave()) writePng(*file, shownPicture(window_));
+        if (const auto file = player_->takeSave()) writePng(*file, Recorder::bitmapOf(shownPicture(), window_));
       host_.present(pictureTarget_.id(), window_);
     } else if (!presented_) {
       host_.present(pictureTarget_.id(), window_);
     }
-    endCapture();
+    recorder_.endCapture();
     ++still_;
     ++frames_;
     state_.messageAge += dt;
@@ -825,7 +619,7 @@ void WalkWindow::run() {
     pace(start);
   }
   state_.records = false;
-  recordVideo(0.0);
+  recorder_.record(shownPicture(), 0.0);
   for (SideState& side : state_.sides)
     if (side.renderer) side.renderer->drain();
   seconds_ = secondsSince(begin);
@@ -858,9 +652,9 @@ nlohmann::ordered_json WalkWindow::toJson() const {
   if (state_.reference) {
     json["reference"] = {{"samples", state_.reference->samples()},
                          {"seconds", state_.reference->seconds()},
-                         {"seconds_in_frames", referenceTime_.spent()},
-                         {"seconds_of_frames", referenceTime_.rest()},
-                         {"longest_in_a_frame", referenceTime_.longest()}};
+                         {"seconds_in_frames", reference_.time().spent()},
+                         {"seconds_of_frames", reference_.time().rest()},
+                         {"longest_in_a_frame", reference_.time().longest()}};
     for (std::size_t i = 0; i < 2; ++i)
       if (const Judgement& j = state_.sides[i].judgement; j.known())
         json["reference"][i == 0 ? "a" : "b"] = {

@@ -1,18 +1,17 @@
-// The walkthrough in a window, or driven by recorded input on any host: camera path and free camera, panel, comparison
-// and live reference.
+// The walkthrough in a window, or driven by recorded input on any host: input, camera, renderers of both sides, what is
+// presented. Overlay, ReferenceWork and Recorder do the rest.
 #pragma once
 
 #include "base/clock.hpp"
-#include "base/time_share.hpp"
-#include "walk/gizmo.hpp"
 #include "walk/input_file.hpp"
 #include "walk/keys.hpp"
 #include "walk/options.hpp"
-#include "walk/renderdoc.hpp"
+#include "walk/overlay.hpp"
+#include "walk/recorder.hpp"
+#include "walk/reference_work.hpp"
 #include "shared/stage_view.hpp"
 #include "walk/state.hpp"
 #include "walk/ui.hpp"
-#include "walk/video.hpp"
 
 #include <chrono>
 
@@ -44,19 +43,10 @@ class WalkWindow {
   void make(SideState& side);
   void draw();
   void makeReference(double frameSeconds);
-  bool seekReference();
-  void judge();
   bool allSettled() const;
   void compose();
   void readPixel(const Compare::Inputs& inputs);
   void inspectPixel(const Compare::Inputs& inputs);
-  void drawLines(const Compare::Inputs& inputs);
-  void drawGlyphs(const Compare::Inputs& inputs);
-  void drawGizmo(const Compare::Inputs& inputs);
-  void takeShot();
-  void recordVideo(double seconds);
-  void beginCapture();
-  void endCapture();
   void pace(Clock::time_point start);
 
   /// Called during long work: shows the old picture and a note of what is being done. Throws Stopped if Escape was
@@ -65,7 +55,7 @@ class WalkWindow {
   void resizeTo(glm::ivec2 window);
   void drawUi(const HostInput& input, double seconds, const std::string& work, double share);
   bool drawsUi() const;
-  Bitmap shownPicture(glm::ivec2 size) const;
+  Recorder::Shown shownPicture() const { return {picture_, window_, view_}; }
   glm::ivec2 pictureSize() const;  ///< size of the computed picture
   const gl::Texture* radianceOf(int side) const;
   void changed() { still_ = 0; }
@@ -75,18 +65,13 @@ class WalkWindow {
   const gl::Context& context_;
   gl::ProgramLibrary& programs_;
   WalkState state_;
+  Overlay overlay_;
+  ReferenceWork reference_;
+  Recorder recorder_;
   std::optional<Ui> ui_;
   std::optional<InputPlayer> player_;
   std::optional<Compare> compare_;
   std::optional<StageView> stageView_;
-  std::optional<gl::Lines> lines_;
-  Gizmo gizmo_;
-  std::optional<Gizmo::Screen> screen_;  ///< in the last frame
-  std::vector<gl::Lines::Line> glyphs_;
-  std::string glyphsAre_;  ///< what glyphs_ was made from
-  std::optional<Video> video_;
-  std::optional<RenderDoc> renderDoc_;
-  bool captures_ = false;  ///< in this frame
   HostInput input_;
   glm::dvec2 cursorBefore_{0.0};
   bool leftBefore_ = false;  ///< the left button was held in the last frame
@@ -99,14 +84,10 @@ class WalkWindow {
   bool touched_ = false;  ///< there was input, so the walk does not end by itself
   bool stop_ = false;
   bool presented_ = false;  ///< compose() presented the renderer's own picture
-  std::optional<Camera> referenceCamera_;  ///< the camera of the reference
-  std::uint64_t referenceVersion_ = 0;  ///< version of the reference's scene
-  TimeShare referenceTime_;
   int frames_ = 0;
   double seconds_ = 0.0, sinceHint_ = 0.0;
   int framesOfTitle_ = 0;
-  Clock::time_point lastBreath_{}, judged_{};
-  int judgedFrame_ = 0;
+  Clock::time_point lastBreath_{};
 };
 
 }  // namespace lucerna::demo

@@ -140,7 +140,7 @@ void dump(const std::string& name, GLuint program, const std::vector<std::pair<G
       throwBadInput("LUCERNA_DUMP_PROGRAMS={}: cannot write {}", folder, file.filename().string());
   };
   for (const auto& [stage, text] : texts) keep(suffixOf(stage), text);
-  keep("features", needsOf(program, texts));
+  keep("needs", needsOf(program, texts));
   keep("name", name + "\n");
 }
 

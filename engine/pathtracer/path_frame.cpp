@@ -20,10 +20,6 @@ PathTracer::Settings tracerSettings(const RenderSettings& settings) {
   return tracer;
 }
 
-bool isSameView(const Camera& a, const Camera& b) {
-  return a.position == b.position && a.direction == b.direction && a.up == b.up && a.verticalFov == b.verticalFov;
-}
-
 }  // namespace
 
 PathFrame::PathFrame(const FrameParts& parts)
@@ -37,7 +33,7 @@ void PathFrame::resize() {
 }
 
 void PathFrame::recordPicture(gl::TimeQuery& timer, const Camera& camera, FrameEffort effort) {
-  const bool isNew = !hasView_ || !isSameView(camera, camera_);
+  const bool isNew = !hasView_ || !camera.seesAs(camera_);
   if (isNew) tracer_.setCamera(camera);
   camera_ = camera;
   hasView_ = true;

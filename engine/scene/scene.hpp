@@ -134,6 +134,11 @@ struct Camera {
   glm::dvec3 direction{0.0, 0.0, -1.0};  ///< unit
   glm::dvec3 up{0.0, 1.0, 0.0};  ///< unit, not parallel to direction
   double verticalFov = 0.9;  ///< radians
+
+  bool seesAs(const Camera& other) const {
+    return position == other.position && direction == other.direction && up == other.up &&
+           verticalFov == other.verticalFov;
+  }
 };
 
 /// Light from infinity in all directions. A latitude-longitude picture: u grows with atan2(x, -z), v from +y (top row)

@@ -35,7 +35,6 @@ static void check(Checks& c) {
 }
 
 extern const Lab kTemplateLab;
-const Lab kTemplateLab{0,  "template", "Template: the disc", {{1, "discArea", 40, {}}, {2, "discPoint", 40, {}}},
-                       20, check};
+const Lab kTemplateLab{0, "template", "The disc", {{1, "discArea", 40, {}}, {2, "discPoint", 40, {}}}, 20, check};
 
 }  // namespace lucerna::demo::labs

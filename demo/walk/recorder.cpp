@@ -1,0 +1,103 @@
+#include "walk/recorder.hpp"
+
+#include "base/error.hpp"
+#include "base/files.hpp"
+#include "inspect.hpp"
+#include "shared/paths.hpp"
+#include "walk/shots.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+namespace lucerna::demo {
+
+namespace fs = std::filesystem;
+
+Recorder::Recorder(WalkState& state) : state_(state), renderDoc_(RenderDoc::find()) {
+  state.canCapture = renderDoc_.has_value();
+  state.canRecord = Video::canBeMade();
+}
+
+Bitmap Recorder::bitmapOf(const Shown& shown, glm::ivec2 size) {
+  const std::vector<glm::vec4> texels = shown.picture.readRgba();
+  Bitmap bitmap;
+  bitmap.width = size.x;
+  bitmap.height = size.y;
+  for (int y = size.y - 1; y >= 0; --y)
+    for (int x = 0; x < size.x; ++x)
+      for (int c = 0; c < 4; ++c)
+        bitmap.rgba.push_back(static_cast<std::uint8_t>(
+            std::lround(255.0f * texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(shown.window.x) +
+                                        static_cast<std::size_t>(x)][c])));
+  return bitmap;
+}
+
+void Recorder::takeShot(const Shown& shown) {
+  state_.shotWanted = false;
+  const SideState& side = state_.side();
+  try {
+    std::error_code ignored;
+    fs::create_directories(state_.shotFolder, ignored);
+    const fs::path stem = freeName(state_.shotFolder, state_.scene->name);
+    std::string note = fmt::format("Lucerna {} on {}\n{} --camera {} --size {}x{}\nexposure {:.6g}", LUCERNA_VERSION,
+                                   state_.rendererName, commandLine("render", state_.scene->file.string(), side.built),
+                                   cameraText(state_.camera->camera()), side.renderer->size().x,
+                                   side.renderer->size().y, state_.exposure);
+    if (side.judgement.known())
+      note += fmt::format("\nrelative error {:.4g}, {:.4g} to {:.4g} (99 %), against {} path-traced samples a pixel",
+                          side.judgement.nrmse().value, side.judgement.nrmse().low, side.judgement.nrmse().high,
+                          state_.reference ? state_.reference->samples() : 0);
+    writePngWithNote(stem.string() + ".png", bitmapOf(shown, shown.view), note);
+    if (side.renderer) writeHdrWithNote(stem.string() + ".hdr", side.renderer->readRadiance(), note);
+    state_.say(fmt::format("{}.png and .hdr written", stem.string()));
+  } catch (const Error& error) { state_.say(error.what()); }
+}
+
+void Recorder::record(const Shown& shown, double seconds) {
+  const auto end = [&] {
+    const bool whole = video_->finish();
+    state_.say(whole ? fmt::format("{}: {} pictures", video_->file().string(), video_->pictures())
+                     : fmt::format("{0} is not whole; what ffmpeg says is in {0}.log", video_->file().string()));
+    video_.reset();
+    state_.records = false;
+    state_.recording.clear();
+  };
+  if (video_ && (!state_.records || video_->size() != shown.view)) end();
+  if (!state_.records) return;
+  try {
+    if (!video_) {
+      std::error_code ignored;
+      fs::create_directories(state_.shotFolder, ignored);
+      video_.emplace(freeName(state_.shotFolder, state_.scene->name + "_video", {".mp4"}).string() + ".mp4",
+                     shown.view);
+      state_.say(fmt::format("recording {}", video_->file().string()));
+    }
+    if (!video_->add(bitmapOf(shown, shown.view), seconds)) {
+      end();
+      return;
+    }
+    state_.recording = fmt::format("recording {}: {:.1f} s", video_->file().string(),
+                                   static_cast<double>(video_->pictures()) / Video::kPicturesASecond);
+  } catch (const Error& error) {
+    state_.records = false;
+    state_.say(error.what());
+  }
+}
+
+void Recorder::beginCapture(bool isAskedFor) {
+  captures_ = std::exchange(state_.captureWanted, false) || isAskedFor;
+  if (!captures_) return;
+  if (renderDoc_) renderDoc_->begin();
+  else state_.say("RenderDoc is missing: install it and start with walk --capture N");
+}
+
+void Recorder::endCapture() {
+  if (!captures_ || !renderDoc_) return;
+  const auto file = renderDoc_->end();
+  state_.say(file ? fmt::format("RenderDoc: {}", *file) : "RenderDoc saw no frame on this host");
+}
+
+}  // namespace lucerna::demo
