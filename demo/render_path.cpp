@@ -220,7 +220,7 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
     if (name.starts_with("path.")) json["deviations"].push_back(name);
   json["leaked_paths"] = statistics.leakedPaths;
   json["wrong_crossings"] = statistics.wrongCrossings;
-  json["loop_turns"] = statistics.iterations;
+  json["iterations"] = statistics.iterations;
   json["collisions"] = statistics.collisions;
   json["settings"] = picture.settings;
   json["size"] = {image.width, image.height};

@@ -9,7 +9,7 @@
 namespace lucerna::demo::bench {
 
 /// What a picture is made without, to tell whose error it is: the cells, all of the reflective shadow map gathered at
-/// each pixel; or the propagation, the exact radiance in the cells. The third floor, exact light at the receivers, is a
+/// each pixel; or the propagation, the exact radiance in the cells. The third bound, exact light at the records, is a
 /// point of `rays`.
 enum class Bound { none, map, cells };
 

@@ -80,7 +80,7 @@ class Drawing {
                     {"ms", drawn.ms},
                     {"relative_error", drawn.statistics.relativeError},
                     {"black_pixels", blackPixels(drawn.image)},
-                    {"loop_turns", drawn.statistics.iterations},
+                    {"iterations", drawn.statistics.iterations},
                     {"leaked_paths", drawn.statistics.leakedPaths},
                     {"wrong_crossings", drawn.statistics.wrongCrossings}});
     progress_.update(static_cast<int>(json.size()));

@@ -47,7 +47,7 @@ PartFolder::Json measureEstimators(const VptTablesInput& input, glm::ivec2 size,
       "\nThe estimator on {} ({}), beside the {} one with other random numbers and {:.4g} samples a pixel. Bias: of "
       "the picture's mean.\n{:<38}{:>12}{:>14}{:>22}{:>12}{:>14}\n",
       picture.label, picture.figure, estimators[0].name, reference.statistics.samples, "", "ms a sample", "NRMSE",
-      "bias", "time", "loop turns");
+      "bias", "time", "iterations");
   double firstMs = 0.0, firstIterations = 0.0;
   for (const VptEstimator& estimator : estimators) {
     if (interrupted()) break;
@@ -70,7 +70,7 @@ PartFolder::Json measureEstimators(const VptTablesInput& input, glm::ivec2 size,
                                   {"bias", bias},
                                   {"bias_error", error},
                                   {"time_ratio", ms / firstMs},
-                                  {"turns_ratio", turns / firstIterations}});
+                                  {"iterations_ratio", turns / firstIterations}});
   }
   made["summary"] = summary;
   return made;
@@ -79,7 +79,7 @@ PartFolder::Json measureEstimators(const VptTablesInput& input, glm::ivec2 size,
 /// Growth along each series: time and loop iterations, per sample and relative to the series' first picture.
 std::string growthOf(const std::vector<VptPicture>& pictures, const std::vector<VptResult>& results, glm::ivec2 size) {
   std::string text = fmt::format("\n{:<44}{:>12}{:>12}{:>12}{:>16}\n", "Growth a sample over a series", "published",
-                                 "time here", "loop turns", "collisions a path");
+                                 "time here", "iterations", "collisions a path");
   const double pixels = static_cast<double>(size.x) * size.y;
   for (std::size_t i = 0, first = 0; i < results.size(); ++i) {
     if (std::string_view(pictures[i].table) != pictures[first].table) first = i;
@@ -207,7 +207,7 @@ Tables measureVptTables(const VptTablesInput& input) {
              {"ms", result.ms},
              {"preparation_ms", result.preparationMs},
              {"spp", result.statistics.samples},
-             {"loop_turns", result.statistics.iterations},
+             {"iterations", result.statistics.iterations},
              {"collisions", result.statistics.collisions},
              {"million_paths_per_s", done / (1000.0 * result.ms)},
              {"published_million_paths_per_s", wanted / (1000.0 * picture.publishedMs)},

@@ -177,7 +177,7 @@ std::vector<gl::Lines::Line> glyphsOf(Glyphs glyphs, const Renderer& renderer, c
   const RenderSettings& settings = renderer.settings();
   const LightPropagationVolume* volume = volumeOf(renderer.technique());
   if (glyphs == Glyphs::none || (glyphs == Glyphs::records ? !cacheOf(renderer.technique()) : !volume)) return {};
-  // Place them as render/lpv_frame.cpp and, but for the blend, render/irradiance_cache_frame.cpp do.
+  // Place them as lpv/lpv_frame.cpp and, but for the blend, irradiance_cache/irradiance_cache_frame.cpp do.
   Bounds bounds = scene.bounds;
   bounds.min -= renderer.origin();
   bounds.max -= renderer.origin();

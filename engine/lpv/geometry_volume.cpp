@@ -116,7 +116,7 @@ void LpvGeometryVolume::count(const Maps& maps, const LpvInputs& inputs) {
     const gl::ComputePass pass("lpv count surfels", gl::Barrier::textureFetch | gl::Barrier::storage);
     count_->use();
     count_->set("fixedScale", scale);
-    counts_.buffer().bindStorage(kLpvFrontBuffer);
+    counts_.buffer().bindStorage(kLpvWavefrontBuffer);
     for (const ReflectiveShadowMap::Outputs* map : maps) {
       map->bind();
       pass.dispatch(map->position.size(), kLpvGroup * glm::ivec3(settings_.tile, settings_.tile, 1));

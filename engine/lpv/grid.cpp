@@ -74,7 +74,7 @@ void resolveCounts(const gl::Program& resolve, const gl::BufferTexture& counts, 
   resolve.set("fixedScale", scale);
   resolve.set("size", size);
   resolve.set("channels", channels);
-  counts.buffer().bindStorage(kLpvFrontBuffer);
+  counts.buffer().bindStorage(kLpvWavefrontBuffer);
   pass.dispatch(size, kLpvGroup);
 }
 

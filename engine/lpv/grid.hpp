@@ -10,7 +10,7 @@
 namespace lucerna {
 
 constexpr glm::ivec3 kLpvGroup{8, 8, 1};  // the fastest of those tried on llvmpipe, see docs/measurements/lpv.md
-constexpr GLuint kLpvFrontBuffer = 0;  // the fastest tried on llvmpipe, see docs/measurements/lpv.md
+constexpr GLuint kLpvWavefrontBuffer = 0;  // the fastest tried on llvmpipe, see docs/measurements/lpv.md
 constexpr std::size_t kLpvCellBytes = 16;  // four coefficients in a buffer
 constexpr gl::Sampling kLpvSampling{gl::Filter::linear, gl::Filter::linear, gl::Wrap::border};  // dark outside the grid
 

@@ -34,7 +34,7 @@ LpvInjection::LpvInjection(gl::ProgramLibrary& programs, const gl::Capabilities&
   if (settings.fill == LpvFill::fixed || halves)
     resolve_ = &programs.loadCompute("lpv resolve", "lpv/resolve.comp", flags);
   if (halves) halves_ = lpvVolume("count", gl::Format::rgba16f, grid.size, {});
-  counts_ = lpvBuffer(capabilities, "lpv front even", gl::Format::rgba32f, grid.volumeBytes());
+  counts_ = lpvBuffer(capabilities, "lpv wavefront even", gl::Format::rgba32f, grid.volumeBytes());
 }
 
 float LpvInjection::fluxScale(const ReflectiveShadowMap::Outputs& rsm) const {
@@ -78,12 +78,12 @@ void LpvInjection::countLights(const LpvInputs& inputs) {
     gl::clearToZero(targets, haveClearTexture_);
   }
   {
-    // Counts that are not resolved are read as the first front.
+    // Counts that are not resolved are read as the first wavefront.
     const gl::Barrier read = halves || !resolve_ ? gl::Barrier::textureFetch : gl::Barrier::none;
     const gl::ComputePass pass("lpv inject by atomics", gl::Barrier::storage | read);
     inject_->use();
     inject_->set("fixedScale", scale);
-    counts_.buffer().bindStorage(kLpvFrontBuffer);
+    counts_.buffer().bindStorage(kLpvWavefrontBuffer);
     if (halves)
       for (GLuint channel = 0; channel < 3; ++channel) halves_[channel].bindImage(channel, gl::Access::readWrite);
     for (const ReflectiveShadowMap::Outputs& rsm : inputs.rsms) {  // atomics need no order
@@ -96,7 +96,7 @@ void LpvInjection::countLights(const LpvInputs& inputs) {
     const gl::ComputePass pass("lpv resolve", gl::Barrier::textureFetch);
     resolve_->use();
     for (GLuint channel = 0; channel < 3; ++channel) halves_[channel].bind(channel);
-    counts_.buffer().bindStorage(kLpvFrontBuffer);
+    counts_.buffer().bindStorage(kLpvWavefrontBuffer);
     pass.dispatch(volume_[0].size(), kLpvGroup);
   } else if (resolve_) {
     resolveCounts(*resolve_, counts_, volume_[0].size(), 3, scale);

@@ -47,8 +47,8 @@ LpvComputePropagation::LpvComputePropagation(gl::ProgramLibrary& programs, const
   const auto buffer = [&](const char* name) {
     return lpvBuffer(capabilities, name, gl::Format::rgba32f, grid.volumeBytes());
   };
-  if (!haveCounts) wavefronts_[0] = buffer("lpv front even");
-  wavefronts_[1] = buffer("lpv front odd");
+  if (!haveCounts) wavefronts_[0] = buffer("lpv wavefront even");
+  wavefronts_[1] = buffer("lpv wavefront odd");
   sums_ = buffer("lpv sums");
   if (settings.joins()) farSums_ = buffer("lpv far sums");
   const int bricksOfAxis = (settings.cascades.cells + kBrick - 1) / kBrick;
@@ -73,7 +73,7 @@ void LpvComputePropagation::run(const LpvVolume& source, LpvInjection& injection
     const gl::ComputePass pass("lpv begin", gl::Barrier::textureFetch);
     begin_->use();
     for (GLuint channel = 0; channel < 3; ++channel) source[channel].bind(channel);
-    wavefronts[0]->buffer().bindStorage(kLpvFrontBuffer);
+    wavefronts[0]->buffer().bindStorage(kLpvWavefrontBuffer);
     pass.dispatch(size_, kLpvGroup);
   }
   {
@@ -130,11 +130,12 @@ LpvLayeredPropagation::LpvLayeredPropagation(gl::ProgramLibrary& programs, const
   sum_ = lpvVolume("sum", grid.summed, grid.size, kLpvSampling);
   if (settings.joins()) farSum_ = lpvVolume("far sum", grid.summed, grid.size, kLpvSampling);
   for (std::size_t i = 0; i < (settings.steps() > 1 ? 2u : 1u); ++i) {
-    wavefronts_[i] = lpvVolume(i == 0 ? "front even" : "front odd", grid.summed, grid.size, kLpvSampling);
+    wavefronts_[i] = lpvVolume(i == 0 ? "wavefront even" : "wavefront odd", grid.summed, grid.size, kLpvSampling);
     for (std::size_t far = 0; far < (settings.joins() ? 2u : 1u); ++far) {
-      const LpvVolume& front = wavefronts_[i];
+      const LpvVolume& wavefront = wavefronts_[i];
       const LpvVolume& sum = far ? farSum_ : sum_;
-      const std::array<const gl::Texture*, 6> targets{&front[0], &front[1], &front[2], &sum[0], &sum[1], &sum[2]};
+      const std::array<const gl::Texture*, 6> targets{&wavefront[0], &wavefront[1], &wavefront[2],
+                                                      &sum[0],       &sum[1],       &sum[2]};
       targets_[i][far] = gl::Framebuffer("lpv propagate layered", targets);
     }
   }
@@ -146,7 +147,7 @@ void LpvLayeredPropagation::run(const LpvVolume& source, const LpvGeometryVolume
   if (settings_.joins()) sums.insert(sums.end(), {&farSum_[0], &farSum_[1], &farSum_[2]});
   gl::clearToZero(sums, haveClearTexture_);
   const int cells = settings_.cascades.cells;
-  const LpvVolume* front = &source;
+  const LpvVolume* wavefront = &source;
   for (int step = 0; step < settings_.steps(); ++step) {
     const auto next = static_cast<std::size_t>(step % 2);
     const bool far = settings_.joins() && step >= settings_.handOver;
@@ -157,7 +158,7 @@ void LpvLayeredPropagation::run(const LpvVolume& source, const LpvGeometryVolume
     const gl::RasterPass pass("lpv propagate layered", targets_[next][far ? 1 : 0], state);
     const gl::Program& program = step == 0 ? *first_ : *further_;
     program.use();
-    for (GLuint channel = 0; channel < 3; ++channel) (*front)[channel].bind(channel);
+    for (GLuint channel = 0; channel < 3; ++channel) (*wavefront)[channel].bind(channel);
     if (geometry) geometry->potential().bind(3);
     noAttributes_.bind();
     for (int k = 0; k < settings_.cascades.cascades; ++k) {
@@ -166,7 +167,7 @@ void LpvLayeredPropagation::run(const LpvVolume& source, const LpvGeometryVolume
       program.set("cells", cells);
       gl::drawPoints(cells * cells * cells);
     }
-    front = &wavefronts_[next];
+    wavefront = &wavefronts_[next];
   }
 }
 

@@ -13,13 +13,13 @@ namespace lucerna {
 /// Of a cell and step (gl/chunks.hpp): 6 neighbours, 5 faces each.
 constexpr double kIterationsOfPropagation = 30.0;
 
-/// Gathers in the cells that light has reached, brick by brick (lpv/propagate.comp). Fronts and sums are buffers of
+/// Gathers in the cells that light has reached, brick by brick (lpv/propagate.comp). Wavefronts and sums are buffers of
 /// three channels, one after the other.
 class LpvComputePropagation {
  public:
   LpvComputePropagation(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, const LpvSettings& settings,
                         bool haveCounts);
-  /// Propagates the injected light, or what is reflected of it. `injection`'s counts serve as a front. `geometry`:
+  /// Propagates the injected light, or what is reflected of it. `injection`'s counts serve as a wavefront. `geometry`:
   /// nullptr without blocking.
   void run(const LpvVolume& source, LpvInjection& injection, const LpvGeometryVolume* geometry);
   /// Units 0 and, for the steps after the hand-over, 3.
@@ -58,7 +58,7 @@ class LpvLayeredPropagation {
   gl::VertexArray noAttributes_;
   std::array<LpvVolume, 2> wavefronts_;
   LpvVolume sum_, farSum_;  ///< of the first steps and, with joined cascades, those after the hand-over
-  std::array<std::array<gl::Framebuffer, 2>, 2> targets_;  ///< front x (sum, far sum)
+  std::array<std::array<gl::Framebuffer, 2>, 2> targets_;  ///< wavefront x (sum, far sum)
 };
 
 }  // namespace lucerna

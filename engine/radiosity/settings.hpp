@@ -29,7 +29,7 @@ struct RadiosityDeviations {
   bool noNearField = false;  ///< no correction closer than the near plane or a patch's own size
 };
 
-/// A named switch, as in engine/settings/deviations.hpp. Names begin with "radiosity.".
+/// A named switch, as in frame/deviation.hpp. Names begin with "radiosity.".
 struct RadiosityDeviation {
   const char* name;
   const char* meaning;

@@ -1,6 +1,6 @@
 // A scene on the GPU for path tracing: triangles and their hierarchy, materials and textures in one atlas, lights and
 // environment, for programs that include shaders/rays/{materials,bvh,environment,lights}.glsl. The path tracer starts
-// paths at a camera, the light propagation volume's receivers at surface points
+// paths at a camera, the irradiance cache's records at surface points
 // (irradiance_cache/irradiance_cache.hpp).
 //
 // Space: the scene moved by -origin() (ray_scene.hpp). Units: scene units.
@@ -44,8 +44,8 @@ class PathScene {
     bool nextEvent = true;  ///< with a table of lights for sampling
     RaySceneSettings rays;
   };
-  /// `needs`: the scene's needs minus those the programs leave out. rankOfMaterial: for closed boundaries (media.hpp);
-  /// may be empty. Throws Error(missingCapability) if the scene exceeds the driver's limits.
+  /// `features`: the scene's, less those that the programs leave out. rankOfMaterial: for closed boundaries
+  /// (media.hpp); may be empty. Throws Error(missingCapability) if the scene exceeds the driver's limits.
   PathScene(const Scene& scene, const SceneFeatures& features, const gl::Capabilities& capabilities,
             const Settings& settings, const std::vector<int>& rankOfMaterial = {});
 

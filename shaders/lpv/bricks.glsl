@@ -1,6 +1,6 @@
 // Bricks of 4^3 cells that light has reached. A propagation step is dispatched for these alone; all others stay zero.
 //
-// The lit cells of a front mark the neighbouring bricks they touch. Between two steps lpv/list_bricks.comp appends
+// The lit cells of a wavefront mark the neighbouring bricks they touch. Between two steps lpv/list_bricks.comp appends
 // newly marked bricks to the list. Bricks are never removed from the list, so a brick that is not on it has not been
 // written since the buffers were cleared. Needs cascades/block.glsl.
 const int kBrick = 4;

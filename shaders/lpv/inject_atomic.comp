@@ -1,5 +1,5 @@
 // Injection by atomics: one invocation per tile of the reflective shadow map. Coefficient i of a cell is accumulated in
-// word 4 cell + i of the first front, all red, then green, then blue, in place.
+// word 4 cell + i of the first wavefront, all red, then green, then blue, in place.
 // FILL_FIXED: 32-bit integers, core OpenGL 4.3, which lpv/resolve.comp converts to floats. `fixedScale` is derived from
 // the largest possible flux, so nothing overflows. Each light is rounded separately and integer sums do not depend on
 // their order, so every run and every order of the texels gives the same bits.

@@ -1,9 +1,9 @@
 // One propagation step of all cascades, as a gather: each cell reads its six neighbours once, in three colour channels.
 // One work group per brick that light has reached (lpv/bricks.glsl).
 //
-// A front lies in one buffer, cell by cell, x fastest, all red, then green, then blue; the sum of fronts lies in
-// another. They are read as texels: on llvmpipe a gather from a storage block takes three times as long. Starting a sum
-// uses no branches, because a software rasteriser executes both sides of each.
+// A wavefront lies in one buffer, cell by cell, x fastest, all red, then green, then blue; the sum of wavefronts lies
+// in another. They are read as texels: on llvmpipe a gather from a storage block takes three times as long. Starting a
+// sum uses no branches, because a software rasteriser executes both sides of each.
 #include "cascades/block.glsl"
 #include "lpv/stored_units.glsl"
 #include "lpv/bricks.glsl"

@@ -1,6 +1,6 @@
 // One propagation step of one cascade as published [LPV2015, 5.3]: drawn slice by slice, with six neighbours of five
-// faces each and the blocking potential read at each crossed face's centre. Three targets take the new front, three add
-// to the sum.
+// faces each and the blocking potential read at each crossed face's centre. Three targets take the new wavefront, three
+// add to the sum.
 #include "cascades/block.glsl"
 #include "lpv/kernel_faces.glsl"
 flat in int fSlice;

@@ -1,5 +1,5 @@
 // Turns atomic counters into coefficients. FILL_FIXED: converts integers to floats in place, for lights or surfels.
-// FILL_HALF: copies images into the first front. FILL_FLOAT needs no such pass.
+// FILL_HALF: copies images into the first wavefront. FILL_FLOAT needs no such pass.
 #include "cascades/block.glsl"
 #include "lpv/fixed.glsl"
 layout(local_size_x = GROUP_X, local_size_y = GROUP_Y, local_size_z = 1) in;
@@ -9,7 +9,7 @@ layout(std430, binding = 0) buffer Counts { uvec4 counts[]; };
 uniform ivec3 size;    // of a stack of cascades
 uniform int channels;  // number of stacks, one after the other
 #else
-layout(std430, binding = 0) writeonly buffer Front { vec4 front[]; };
+layout(std430, binding = 0) writeonly buffer Wavefront { vec4 wavefront[]; };
 layout(binding = 0) uniform sampler3D countRed;
 layout(binding = 1) uniform sampler3D countGreen;
 layout(binding = 2) uniform sampler3D countBlue;
@@ -29,8 +29,8 @@ void main() {
   int cells = grids.shape.x, layers = cells * grids.shape.y;
   if (any(greaterThanEqual(cell, ivec3(cells, cells, layers)))) return;
   int at = (cell.z * cells + cell.y) * cells + cell.x, channel = cells * cells * layers;
-  front[at] = texelFetch(countRed, cell, 0);
-  front[at + channel] = texelFetch(countGreen, cell, 0);
-  front[at + 2 * channel] = texelFetch(countBlue, cell, 0);
+  wavefront[at] = texelFetch(countRed, cell, 0);
+  wavefront[at + channel] = texelFetch(countGreen, cell, 0);
+  wavefront[at + 2 * channel] = texelFetch(countBlue, cell, 0);
 #endif
 }

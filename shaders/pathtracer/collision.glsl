@@ -98,8 +98,8 @@ bool lampsReach(Path path) {
 #endif
 }
 
-// At a collision: light from a lamp if `asks`, then a new direction from the phase function.
-int scatterInMedium(inout Path path, MediumRecord medium, PathNumbers numbers, bool asks) {
+// At a collision: light from a lamp if `queuesLight`, then a new direction from the phase function.
+int scatterInMedium(inout Path path, MediumRecord medium, PathNumbers numbers, bool queuesLight) {
   path.skip = kNoHit;
   path.head = 0.0;
   path.chain = 0u;
@@ -118,9 +118,9 @@ int scatterInMedium(inout Path path, MediumRecord medium, PathNumbers numbers, b
   const bool asked = false;
 #else
   // a point light was already sampled on the way here
-  bool asked = asks && medium.grid < 0 && isPointLike(randomWords(numbers, path.event, kPurposePick));
+  bool asked = queuesLight && medium.grid < 0 && isPointLike(randomWords(numbers, path.event, kPurposePick));
 #endif
-  if (counts(path.scatterings) && asks && !asked &&
+  if (counts(path.scatterings) && queuesLight && !asked &&
       sampleLight(path.origin, randomPair(numbers, path.event, kPurposeLight),
                   randomWords(numbers, path.event, kPurposePick), light)) {
     vec3 phase = phaseValue(medium, path.direction, light.direction);

@@ -289,22 +289,22 @@ uint indexOf(ivec2 pixel) { return uint(pixel.y * tracer.picture.x + pixel.x); }
 
 // What a lane does. Its job is the kind of ray that it traces, its stage what it does next. Within an iteration of the
 // loop in main() each stage follows from those above it:
-//   stage     of the lane                          does                                        next
-//   kTraces   begins an iteration                  traces its job's ray                        kLit, kFlies, kMeets
-//   kLit      shadow ray traced to its end         adds its light                              `after`
-//   kFlies    path's ray traced                    samples lamps along it, if in a medium      kFlown, else kArrives
-// kFlown    lamps along it sampled               flies: may collide and scatter              kArrives, kContinue, kEnds
-//   kArrives  at a surface, or far away            looks for other boundaries beside it        kMeets
-//   kMeets    all boundaries there known           gathers light and scatters                  kContinue, kEnds
-//   kEnds     path ended                           completes the sample, starts the next path  kTraces
-//   kContinue   path has its next ray                                                            kTraces
+//   stage      of the lane                    does                                        next
+//   kTraces    begins an iteration            traces its job's ray                        kLit, kFlies, kHits
+//   kLit       shadow ray traced to its end   adds its light                              `after`
+//   kFlies     path's ray traced              samples lamps along it, if in a medium      kFlown, else kArrives
+//   kFlown     lamps along it sampled         flies: may collide and scatter              kArrives, kContinue, kEnds
+//   kArrives   at a surface, or far away      looks for other boundaries beside it        kHits
+//   kHits      all boundaries there known     gathers light and scatters                  kContinue, kEnds
+//   kEnds      path ended                     completes the sample, starts the next path  kTraces
+//   kContinue  path has its next ray                                                      kTraces
 // Queued shadow rays, and the short rays beside a boundary, come before the next stage: kTraces, with their job.
 const uint kPathRay = 0u;
 const uint kShadowRay = 1u;
 const uint kCoincidentRay = 2u;  // the short ray across a boundary
 uint job = kPathRay;
 
-const int kTraces = 0, kLit = 1, kFlies = 2, kFlown = 3, kArrives = 4, kMeets = 5, kEnds = 6, kContinue = 7;
+const int kTraces = 0, kLit = 1, kFlies = 2, kFlown = 3, kArrives = 4, kHits = 5, kEnds = 6, kContinue = 7;
 int stage = kTraces;
 int after = kContinue;  // the stage to resume after a shadow ray has been traced to its end
 
@@ -411,7 +411,7 @@ void useHit(inout Path path, Ray ray, Hit hit, PathNumbers numbers) {
       spillShadow();
     } else if (!goesOn) {
       job = kPathRay;
-      stage = kMeets;
+      stage = kHits;
       if (hit.triangle != kNoHit) {  // a surface immediately behind: the path has hit it from its current position
         take(path);
         reloadHit(0u, arrival);
@@ -493,10 +493,10 @@ void fly(inout Path path, PathNumbers numbers) {
 #endif
 }
 
-// kArrives and kMeets: all boundaries at the surface are found, then the hit is handled and lamps are sampled.
+// kArrives and kHits: all boundaries at the surface are found, then the hit is handled and lamps are sampled.
 void arrive(inout Path path, PathNumbers numbers) {
   if (stage == kArrives) {
-    stage = kMeets;
+    stage = kHits;
 #if TOUCHING
     // The other boundaries crossed by the step to the far side: a face that coincides with this one belongs to the same
     // interface.
@@ -512,7 +512,7 @@ void arrive(inout Path path, PathNumbers numbers) {
     spillCoincident();
 #endif
   }
-  if (stage == kMeets) {
+  if (stage == kHits) {
     take(path);
     reloadHit(0u, arrival);
     stage = handleHit(path, arrival, numbers) ? kContinue : kEnds;

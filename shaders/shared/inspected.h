@@ -1,5 +1,5 @@
-// What shading records for the inspected pixel (engine/render/inspected_pixel.hpp): indices in a storage block of vec4.
-// The forward and the radiosity shader write it if compiled with the flag INSPECTED.
+// What shading records for the inspected pixel (engine/forward/inspected_pixel.hpp): indices in a storage block of
+// vec4. The forward and the radiosity shader write it if compiled with the flag INSPECTED.
 #pragma once
 #include "shared/types.h"
 

@@ -15,7 +15,7 @@ layout(binding = 1) uniform sampler3D green;
 layout(binding = 2) uniform sampler3D blue;
 #endif
 uniform int layer;
-// StagePicture::Kind: 0 position, 1 normal, 2 flux, 3 depth, 4 irradiance of receivers, 5 coefficients
+// StagePicture::Kind: 0 position, 1 normal, 2 flux, 3 depth, 4 irradiance of records, 5 coefficients
 uniform int kind;
 uniform float factor;  // scales light
 uniform vec3 minimum;  // of the scene

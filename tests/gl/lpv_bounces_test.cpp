@@ -183,7 +183,7 @@ TEST_F(LpvBounces, TheSumOfAllBouncesIsBounded) {
   }
 }
 
-TEST_F(LpvBounces, TheTwinsSourcesFollowTheGeometricSeries) {
+TEST_F(LpvBounces, TheReferencesSourcesFollowTheGeometricSeries) {
   // Each bounce adds rho times the one before at most, also in the reference implementation, bounce by bounce.
   for (const float rho : {0.5f, 0.99f, 1.0f}) {
     const std::vector<RsmTexel> texels = closedBox(rho);

@@ -1,4 +1,4 @@
-// Each deviation of engine/settings/deviations.cpp by its own known figure: what is right without it, and what it does
+// Each deviation of engine/NAME/technique.cpp by its own known figure: what is right without it, and what it does
 // when it is on.
 //
 // Switches are turned by name, as on the command line. Where the reference implementation has the matching option, the

@@ -251,7 +251,7 @@ Medium mediumOf(const glm::vec3& scattering, const glm::vec3& absorption) {
   return medium;
 }
 
-TEST_F(MediaFunctions, SpectralWeightsAreTheTwinsAndConserveTheSumOfChannels) {
+TEST_F(MediaFunctions, SpectralWeightsAreTheReferencesAndConserveTheSumOfChannels) {
   const std::vector<Medium> media{
       mediumOf({1.0f, 5.0f, 1000.0f}, glm::vec3(0.0f)), mediumOf({0.0f, 2.0f, 0.3f}, {0.0f, 0.1f, 7.0f}),
       mediumOf(glm::vec3(3.0f), {0.0f, 1.0f, 2.0f}), mediumOf({1e-6f, 1e-3f, 1e4f}, glm::vec3(0.0f))};

@@ -135,7 +135,7 @@ class PathFunctionsTest : public SharedProgramsTest {
   std::uniform_real_distribution<double> uniform_{0.0, 1.0};
 };
 
-TEST_F(PathFunctionsTest, RandomNumbersAreTheTwinsBitByBit) {
+TEST_F(PathFunctionsTest, RandomNumbersAreTheReferencesBitByBit) {
   std::vector<Pair> inputs;
   for (int i = 0; i < 4096; ++i)
     inputs.push_back({glm::vec4(i * 7 % 1000, i, i % 6, i % 5), glm::vec4(i % 3, 0, 0, 0)});

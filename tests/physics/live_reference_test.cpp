@@ -18,7 +18,7 @@ namespace {
 
 class LiveReference : public SharedProgramsTest {
  protected:
-  /// As demo/walk/reference.cpp samples; another seed is independent.
+  /// As demo/walk/live_reference.cpp samples; another seed is independent.
   PathTracer sampler(const Scene& scene, std::uint32_t seed) const {
     PathTracer::Settings settings;
     settings.size = kSize;

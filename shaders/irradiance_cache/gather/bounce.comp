@@ -1,5 +1,5 @@
 // One bounce more at the points that keep light of further bounces: their own irradiance, and that of the points that
-// their rays have met, times the albedo there (around.comp). One invocation per point.
+// their rays have met, times the albedo there (hemisphere.comp). One invocation per point.
 layout(local_size_x = 64) in;
 #include "shared/irradiance_cache.h"
 layout(std430, binding = CACHE_RECORDS_BUFFER) readonly restrict buffer CacheRecords { CacheRecord records[]; };

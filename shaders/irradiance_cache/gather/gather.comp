@@ -5,8 +5,8 @@
 //   E = Phi c1 c2 / (pi (r^2 + A c2 / pi)),  c1 = <n, p - x>+ / r,  c2 = mean <n_p, x - p>+ / r:
 // a point [Dachsbacher2005] at a distance, a disc near by. Near nodes are opened; nodes behind the record are
 // skipped. Near texels use their outline in the sun's map (rsm/transfer.glsl).
-// SHARED_WITH_RAYS: rays find the points too (around.comp), both weighted by the balance heuristic [Veach1997] of the
-// densities over solid angle, r^2 / (A c2) of points and n c1 / pi of n rays:
+// SHARED_WITH_RAYS: rays find the points too (hemisphere.comp), both weighted by the balance heuristic [Veach1997] of
+// the densities over solid angle, r^2 / (A c2) of points and n c1 / pi of n rays:
 //   E = Phi c1 c2 / (pi r^2 + n A c1 c2),
 // bounded next to a point. A is the area that one texel stands for.
 // Visibility: each lane keeps four of its nodes, drawn in proportion to their contribution (reservoir sampling
