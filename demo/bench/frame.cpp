@@ -256,7 +256,7 @@ int runFrame(FrameOptions options) {
   options.common.apply();
   checkWritable(options.output);
   options.scene = sceneOrAtrium(options.scene);
-  if (options.techniques.empty()) options.techniques = {std::string(kUsualTechnique)};
+  if (options.techniques.empty()) options.techniques = {std::string(kDefaultTechnique)};
   std::vector<SweepPoint> asked;
   for (const std::string& text : options.techniques) {
     asked.push_back(parseSweepPoint(text, "--technique"));

@@ -1,6 +1,7 @@
 #include "bench/frame_passes.hpp"
 
 #include "base/error.hpp"
+#include "gl/read_pictures.hpp"
 #include "gl/lines.hpp"
 #include "shared/contact_sheet.hpp"
 
@@ -146,15 +147,6 @@ namespace {
 
 constexpr int kTileSide = 256;
 
-Image imageOf(const gl::Texture& texture) {
-  const std::vector<glm::vec4> texels = texture.readRgba();
-  Image image(texture.size().x, texture.size().y);
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x)
-      image.at(x, y) = glm::vec3(texels[static_cast<std::size_t>((image.height - 1 - y) * image.width + x)]);
-  return image;
-}
-
 /// Scaled by whole numbers, so that no texel is lost or smeared, to about the height of a tile.
 Bitmap tileOf(const Image& image) {
   const int shrink = std::max(static_cast<int>(std::lround(static_cast<double>(image.height) / kTileSide)), 1);
@@ -192,7 +184,7 @@ int brightestLayer(const Renderer& renderer, StageView& view, const Bounds& boun
   for (const StagePicture& picture : renderer.stagePictures()) {
     if (picture.kind != StagePicture::Kind::coefficients) continue;
     for (int layer = 0; layer < StageView::layersOf(picture); ++layer) {
-      const glm::dvec3 mean = meanOf(imageOf(view.recordUnscaled(picture, layer, bounds)));
+      const glm::dvec3 mean = meanOf(gl::readImage(view.recordUnscaled(picture, layer, bounds)));
       if (mean.x + mean.y + mean.z > most) brightest = layer, most = mean.x + mean.y + mean.z;
     }
     break;
@@ -211,7 +203,7 @@ Bitmap stageSheet(const Pass& pass, const Renderer& renderer, StageView& view, c
       continue;
     const bool isVolume = picture.kind == StagePicture::Kind::coefficients;
     const int layer = isVolume ? brightestLayer(renderer, view, bounds) : 0, layers = StageView::layersOf(picture);
-    Image image = imageOf(view.record(picture, layer, 1.0f, bounds));
+    Image image = gl::readImage(view.record(picture, layer, 1.0f, bounds));
     if (picture.kind == StagePicture::Kind::depth) stretch(image);
     tiles.push_back({layers > 1 ? fmt::format("{}, layer {} of {}", picture.name, layer + 1, layers) : picture.name,
                      tileOf(image)});
@@ -237,7 +229,7 @@ Bitmap glyphPicture(Glyphs glyphs, const Renderer& renderer, gl::ProgramLibrary&
   const glm::vec2 size(renderer.size());
   gl::Lines(programs).draw(framebuffer, {{0, 0}, renderer.size(), 0.5f * size, glm::vec2(0.5f), size},
                            renderer.linesView(camera, scene.bounds), lines, 1.5f);
-  Image image = imageOf(target);
+  Image image = gl::readImage(target);
   Bitmap bitmap;
   bitmap.width = image.width, bitmap.height = image.height;
   for (const glm::vec3& p : image.pixels)

@@ -42,8 +42,6 @@ struct CommonOptions {
   void writeJson(const nlohmann::ordered_json& json) const;  ///< no effect without --json
 };
 
-inline constexpr std::string_view kUsualTechnique = "irradiance-cache";
-
 /// --technique, --component, --fidelity, --deviation, --set, --size: the options of a picture.
 struct PictureOptions {
   /// technique: empty until readSettingsFile(), unless it is given.

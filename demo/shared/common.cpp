@@ -73,7 +73,7 @@ void PictureOptions::declare(Command app) {
   };
   addNames(app.addOption("--technique", technique,
                          fmt::format("{}; without it the one that alone reads a setting or deviation given, else {}",
-                                     fmt::join(techniqueNames(), ", "), kUsualTechnique)),
+                                     fmt::join(techniqueNames(), ", "), kDefaultTechnique)),
            techniqueNames());
   addNames(app.addOption("--component", component, "all, direct or indirect").showDefault(), namesOf(Component{}));
   addNames(
@@ -107,7 +107,7 @@ void PictureOptions::readSettingsFile() {
 
 std::string PictureOptions::impliedTechnique() const {
   const auto implied = [&](const std::string& option, std::string_view name) {
-    if (name != kUsualTechnique) logInfo("{}: using technique {}, the only one that reads it", option, name);
+    if (name != kDefaultTechnique) logInfo("{}: using technique {}, the only one that reads it", option, name);
     return std::string(name);
   };
   if (fidelity != "corrected") {
@@ -119,7 +119,7 @@ std::string PictureOptions::impliedTechnique() const {
       return implied(deviations.front(), std::string_view(deviation.name).substr(0, deviations.front().find('.')));
   for (const std::string& assignment : settings)
     if (const auto only = onlyTechnique(*parseSet(assignment).setting)) return implied(assignment, *only);
-  return std::string(kUsualTechnique);
+  return std::string(kDefaultTechnique);
 }
 
 void PictureOptions::addSettingsFile() {

@@ -2,13 +2,13 @@
 
 #include "base/error.hpp"
 #include "base/files.hpp"
+#include "gl/read_pictures.hpp"
 #include "inspect.hpp"
 #include "shared/paths.hpp"
 #include "walk/shots.hpp"
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <filesystem>
 #include <utility>
 
@@ -19,20 +19,6 @@ namespace fs = std::filesystem;
 Recorder::Recorder(WalkState& state) : state_(state), renderDoc_(RenderDoc::find()) {
   state.canCapture = renderDoc_.has_value();
   state.canRecord = Video::canBeMade();
-}
-
-Bitmap Recorder::bitmapOf(const Shown& shown, glm::ivec2 size) {
-  const std::vector<glm::vec4> texels = shown.picture.readRgba();
-  Bitmap bitmap;
-  bitmap.width = size.x;
-  bitmap.height = size.y;
-  for (int y = size.y - 1; y >= 0; --y)
-    for (int x = 0; x < size.x; ++x)
-      for (int c = 0; c < 4; ++c)
-        bitmap.rgba.push_back(static_cast<std::uint8_t>(
-            std::lround(255.0f * texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(shown.window.x) +
-                                        static_cast<std::size_t>(x)][c])));
-  return bitmap;
 }
 
 void Recorder::takeShot(const Shown& shown) {
@@ -50,7 +36,7 @@ void Recorder::takeShot(const Shown& shown) {
       note += fmt::format("\nrelative error {:.4g}, {:.4g} to {:.4g} (99 %), against {} path-traced samples a pixel",
                           side.judgement.nrmse().value, side.judgement.nrmse().low, side.judgement.nrmse().high,
                           state_.reference ? state_.reference->samples() : 0);
-    writePngWithNote(stem.string() + ".png", bitmapOf(shown, shown.view), note);
+    writePngWithNote(stem.string() + ".png", gl::readBitmap(shown.picture, shown.view), note);
     if (side.renderer) writeHdrWithNote(stem.string() + ".hdr", side.renderer->readRadiance(), note);
     state_.say(fmt::format("{}.png and .hdr written", stem.string()));
   } catch (const Error& error) { state_.say(error.what()); }
@@ -75,7 +61,7 @@ void Recorder::record(const Shown& shown, double seconds) {
                      shown.view);
       state_.say(fmt::format("recording {}", video_->file().string()));
     }
-    if (!video_->add(bitmapOf(shown, shown.view), seconds)) {
+    if (!video_->add(gl::readBitmap(shown.picture, shown.view), seconds)) {
       end();
       return;
     }

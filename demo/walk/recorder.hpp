@@ -1,7 +1,6 @@
 // What is kept of the window: pictures with a note on how they were made, videos, a frame for RenderDoc.
 #pragma once
 
-#include "base/image.hpp"
 #include "gl/objects.hpp"
 #include "walk/renderdoc.hpp"
 #include "walk/state.hpp"
@@ -16,12 +15,10 @@ class Recorder {
   /// The presented picture.
   struct Shown {
     const gl::Texture& picture;
-    glm::ivec2 window, view;  ///< view: the window without the panel
+    glm::ivec2 view;  ///< the window without the panel
   };
   explicit Recorder(WalkState& state);
 
-  /// `size` pixels from the upper left corner of the window.
-  static Bitmap bitmapOf(const Shown& shown, glm::ivec2 size);
   void takeShot(const Shown& shown);
   /// Adds the picture to the video that is being recorded, or ends it; seconds: for which it is shown.
   void record(const Shown& shown, double seconds);

@@ -3,6 +3,7 @@
 #include "base/clock.hpp"
 #include "base/error.hpp"
 #include "gl/build_watch.hpp"
+#include "gl/read_pictures.hpp"
 #include "gl/wait.hpp"
 #include "walk/live_reference.hpp"
 
@@ -75,14 +76,7 @@ void ReferenceWork::judge(const Frame& frame) {
     side.judgedPicture = side.pictureVersion;
     if (side.shows == Shows::picture) {
       if (!side.picture || side.picture->size2d() != state_.reference->size()) continue;
-      const std::vector<glm::vec4> texels = side.picture->readRgba();
-      Image image(side.picture->size().x, side.picture->size().y);
-      for (int y = 0; y < image.height; ++y)
-        for (int x = 0; x < image.width; ++x)
-          image.at(x, image.height - 1 - y) =
-              glm::vec3(texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
-                               static_cast<std::size_t>(x)]);
-      side.judgement.judge(std::move(image), state_.reference->reference(), frame.isSettled);
+      side.judgement.judge(gl::readImage(*side.picture), state_.reference->reference(), frame.isSettled);
     } else if (side.renderer && side.renderer->size() == state_.reference->size()) {
       side.judgement.judge(side.renderer->readRadiance(), state_.reference->reference(), frame.isSettled);
     }

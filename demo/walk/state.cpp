@@ -30,7 +30,7 @@ void chooseTechnique(PictureOptions& options, const std::string& technique) {
 std::string commandLine(const std::string& command, const std::string& scene, const PictureOptions& o) {
   const PictureOptions usual;
   std::string line = "lucerna " + command + " " + bench::shellWord(scene);
-  if (o.technique != kUsualTechnique) line += " --technique " + o.technique;
+  if (o.technique != kDefaultTechnique) line += " --technique " + o.technique;
   if (o.component != usual.component) line += " --component " + o.component;
   if (o.fidelity != usual.fidelity) line += " --fidelity " + o.fidelity;
   for (const std::string& deviation : o.deviations) line += " --deviation " + bench::shellWord(deviation);

@@ -9,6 +9,7 @@
 #include "gl/build_watch.hpp"
 #include "gl/draw.hpp"
 #include "gl/pass.hpp"
+#include "gl/read_pictures.hpp"
 #include "walk/ground.hpp"
 #include "walk/panel.hpp"
 #include "shared/paths.hpp"
@@ -595,7 +596,7 @@ void WalkWindow::run() {
     if (drawsUi()) {
       drawUi(input_, dt, "", -1.0);
       if (player_)
-        if (const auto file = player_->takeSave()) writePng(*file, Recorder::bitmapOf(shownPicture(), window_));
+        if (const auto file = player_->takeSave()) writePng(*file, gl::readBitmap(picture_, window_));
       host_.present(pictureTarget_.id(), window_);
     } else if (!presented_) {
       host_.present(pictureTarget_.id(), window_);

@@ -55,7 +55,7 @@ class WalkWindow {
   void resizeTo(glm::ivec2 window);
   void drawUi(const HostInput& input, double seconds, const std::string& work, double share);
   bool drawsUi() const;
-  Recorder::Shown shownPicture() const { return {picture_, window_, view_}; }
+  Recorder::Shown shownPicture() const { return {picture_, view_}; }
   glm::ivec2 pictureSize() const;  ///< size of the computed picture
   const gl::Texture* radianceOf(int side) const;
   void changed() { still_ = 0; }

@@ -33,8 +33,10 @@ constexpr Transport transportOf(Component component) {
 enum class Fidelity { corrected, original, thesis, demo };
 constexpr std::array<std::string_view, 4> namesOf(Fidelity) { return {"corrected", "original", "thesis", "demo"}; }
 
+constexpr std::string_view kDefaultTechnique = "irradiance-cache";
+
 struct RenderSettings {
-  std::string_view technique = "irradiance-cache";  ///< the name of one in render/techniques.hpp
+  std::string_view technique = kDefaultTechnique;  ///< the name of one in render/techniques.hpp
   Component component = Component::all;
   glm::ivec2 size{1280, 720};
   bool reuse = true;  ///< stages with unchanged inputs are not run again; the same picture, bit by bit

@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "gl/read_pictures.hpp"
 #include "render/techniques.hpp"
 #include "rsm/lamp_choice.hpp"
 #include "scene/place.hpp"
@@ -127,7 +128,7 @@ SurfacePrograms Renderer::surfacePrograms(gl::ProgramLibrary& programs, bool ins
                                {"SPECULAR", features_.specular && showsDirect()},
                                {"EMISSION", features_.emission && showsRest},
                                {"INSPECTED", inspected}});
-    for (const char* flag : {"HAZE", "SHOW_REFUSED", "INDIRECT_SPECULAR"})  // 0 if the technique sets them not
+    for (const char* flag : {"HAZE", "SHOW_REFUSED", "INDIRECT_SPECULAR"})  // 0 unless the technique sets them
       if (std::none_of(own.begin(), own.end(), [&](const auto& o) { return o.first == flag; }))
         flags.push_back({flag, 0});
     return &programs.loadRaster(name, "forward/surface.vert", shader, gl::with(flags, own));
@@ -346,32 +347,9 @@ void Renderer::drain() {
   if (technique_) technique_->collect(true);
 }
 
-Image Renderer::readRadiance() const {
-  const std::vector<glm::vec4> texels = radiance_.readRgba();
-  Image image(settings_.size.x, settings_.size.y);
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x)
-      image.at(x, y) =
-          glm::vec3(texels[static_cast<std::size_t>(image.height - 1 - y) * static_cast<std::size_t>(image.width) +
-                           static_cast<std::size_t>(x)]);
-  return image;
-}
+Image Renderer::readRadiance() const { return gl::readImage(radiance_); }
 
-Bitmap Renderer::readDisplay() const {
-  const std::vector<glm::vec4> texels = display_.readRgba();
-  Bitmap bitmap;
-  bitmap.width = settings_.size.x;
-  bitmap.height = settings_.size.y;
-  bitmap.rgba.reserve(4 * texels.size());
-  for (int y = bitmap.height - 1; y >= 0; --y)
-    for (int x = 0; x < bitmap.width; ++x) {
-      const glm::vec4& texel =
-          texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(bitmap.width) + static_cast<std::size_t>(x)];
-      for (int channel = 0; channel < 4; ++channel)
-        bitmap.rgba.push_back(static_cast<std::uint8_t>(std::lround(255.0f * texel[channel])));
-    }
-  return bitmap;
-}
+Bitmap Renderer::readDisplay() const { return gl::readBitmap(display_, settings_.size); }
 
 std::size_t Renderer::gpuBytes() const {
   std::size_t bytes = frameConstants_.bytes() + radiance_.bytes() + depth_.bytes() + display_.bytes();

@@ -136,12 +136,12 @@ TEST_F(RayCasterOnGl, MeetsWhatBruteForceMeets) {
       const RayScene rayScene(scene, capabilities());
       const std::vector<GlRay> rays = randomRays(4096, centre - rayScene.origin(), glm::dvec3(1.5 * scale), 2);
       const std::vector<GlHit> hits = trace(library(), rayScene, rays);
-      std::vector<GlHit> expectedOnes;
+      std::vector<GlHit> expectedHits;
       for (const GlRay& ray : rays) {
         const Reference expected = bruteForce(scene, rayScene.origin(), ray);
-        expectedOnes.push_back({static_cast<float>(expected.t), expected.triangle, glm::vec2(0.0f)});
+        expectedHits.push_back({static_cast<float>(expected.t), expected.triangle, glm::vec2(0.0f)});
       }
-      const Verdict v = compare(scene, rayScene, rays, hits, expectedOnes);
+      const Verdict v = compare(scene, rayScene, rays, hits, expectedHits);
       EXPECT_GT(v.met, 1000u) << scale << ", " << far;
       EXPECT_EQ(v.wrong + v.theirs, 0u) << scale << ", " << far;
       EXPECT_LE(v.atEdges, 2u) << scale << ", " << far;
@@ -251,18 +251,18 @@ TEST_F(RayCasterOnGl, MeetsTheGiantAndTheTinyTheSliverAndTheDuplicate) {
   for (int i = 0; i < 1000; ++i)
     rays.push_back({glm::vec3(0.001f * static_cast<float>(i) - 0.5f, 0.25f + 2.5e-7f, 2), 0.0f, glm::vec3(0, 0, -1)});
   const std::vector<GlHit> hits = trace(library(), rayScene, rays);
-  std::vector<GlHit> expectedOnes;
+  std::vector<GlHit> expectedHits;
   for (const GlRay& ray : rays) {
     const Reference expected = bruteForce(scene, rayScene.origin(), ray);
-    expectedOnes.push_back({static_cast<float>(expected.t), expected.triangle, glm::vec2(0.0f)});
+    expectedHits.push_back({static_cast<float>(expected.t), expected.triangle, glm::vec2(0.0f)});
   }
   std::size_t wrong = 0, tiny = 0, slivers = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     tiny += hits[i].triangle >= 1 && hits[i].triangle < 129;
     slivers += hits[i].triangle >= 129 && hits[i].triangle != kNoHit;
-    const bool same = hits[i].triangle == expectedOnes[i].triangle ||
-                      std::abs(hits[i].t - expectedOnes[i].t) <= 1e-5f * expectedOnes[i].t;
-    const std::uint32_t nearer = hits[i].t < expectedOnes[i].t ? hits[i].triangle : expectedOnes[i].triangle;
+    const bool same = hits[i].triangle == expectedHits[i].triangle ||
+                      std::abs(hits[i].t - expectedHits[i].t) <= 1e-5f * expectedHits[i].t;
+    const std::uint32_t nearer = hits[i].t < expectedHits[i].t ? hits[i].triangle : expectedHits[i].triangle;
     wrong += !same && std::abs(handleHit(scene, rayScene.origin(), rays[i], nearer).inside) > 3e-7;
   }
   EXPECT_EQ(wrong, 0u);
@@ -344,12 +344,12 @@ TEST_F(RayCasterOnGl, OutlivesFansAndNestedBoxes) {
     for (GlRay& ray : rays)
       if (&ray - rays.data() < 100) ray.direction = -ray.origin * 2.0f;  // through the middle
     const std::vector<GlHit> hits = trace(library(), rayScene, rays);
-    std::vector<GlHit> expectedOnes;
+    std::vector<GlHit> expectedHits;
     for (const GlRay& ray : rays) {
       const Reference expected = bruteForce(*scene, rayScene.origin(), ray);
-      expectedOnes.push_back({static_cast<float>(expected.t), expected.triangle, glm::vec2(0.0f)});
+      expectedHits.push_back({static_cast<float>(expected.t), expected.triangle, glm::vec2(0.0f)});
     }
-    const Verdict v = compare(*scene, rayScene, rays, hits, expectedOnes);
+    const Verdict v = compare(*scene, rayScene, rays, hits, expectedHits);
     EXPECT_EQ(v.wrong, 0u);
     EXPECT_GT(v.met, 30u);
   }
