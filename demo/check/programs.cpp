@@ -110,7 +110,7 @@ Scene boxOfEverything() {
   scene.cameraMedium = static_cast<int>(scene.media.size()) - 1;
   Material& shiny = scene.materials.front();
   shiny.specular = glm::vec3(0.5f);
-  shiny.shininess = 50.0f;
+  shiny.roughness = 0.2f;
   return scene;
 }
 

@@ -2,7 +2,9 @@
 
 #include "base/error.hpp"
 #include "gl/draw.hpp"
+#include "scene/coat.hpp"
 #include "shared/bindings.h"
+#include "shared/coat.h"
 
 #include <algorithm>
 #include <array>
@@ -84,7 +86,9 @@ GpuScene::GpuScene(const Scene& scene, const SceneFeatures& features, const gl::
 
   // Materials, with the textures that the scene needs.
   for (const Material& material : scene.materials) {
-    Surface surface{material.diffuse, material.specular, material.emission, material.shininess};
+    Surface surface{material.bsdf == Bsdf::conductor ? glm::vec3(0.0f) : material.diffuse,
+                    hasCoat(material) ? material.specular : glm::vec3(0.0f), material.emission,
+                    std::max(material.roughness, static_cast<float>(COAT_LEAST_ALPHA))};
     if (features.diffuseTextures && material.diffuseTexture >= 0)
       surface.diffuseTexture = upload(material.diffuseTexture, kColour);
     surface.masked = features.alphaMasks && material.alphaMasked;
@@ -105,6 +109,11 @@ GpuScene::GpuScene(const Scene& scene, const SceneFeatures& features, const gl::
       if (material.metalMap->texture >= 0) surface.metalTexture = upload(material.metalMap->texture, kLinear);
     }
     surfaces_.push_back(surface);
+  }
+  if (features.specular) {
+    coats_.emplace("coats", gl::Format::rgba32f, glm::ivec2(COAT_COSINES, COAT_ALPHAS),
+                   gl::Sampling{gl::Filter::linear, gl::Filter::linear});
+    coats_->upload(gl::Texels::rgbaFloat, coatTable().data());
   }
   if (features.diffuseTextures || features.emissionTextures || features.normalMaps || features.metalMaps) {
     white_.emplace("white", gl::Format::rgba8, glm::ivec2(1));
@@ -151,14 +160,15 @@ gl::ShaderFlags GpuScene::materialFlags(bool masked) const {
           {"ALPHA_MASK", masked},
           {"EMISSION_TEXTURES", features_.emissionTextures},
           {"NORMAL_MAPS", features_.normalMaps},
-          {"METAL_MAPS", features_.metalMaps}};
+          {"METAL_MAPS", features_.metalMaps},
+          {"SPECULAR", features_.specular}};
 }
 
 void GpuScene::bindSurface(const gl::Program& program, const Surface& surface) const {
   program.set("materialDiffuse", surface.diffuse);
   if (features_.specular) {
     program.set("materialSpecular", surface.specular);
-    program.set("materialShininess", surface.shininess);
+    program.set("materialAlpha", surface.alpha);
   }
   if (features_.emission) program.set("materialEmission", surface.emission);
   const auto bind = [&](int texture, GLuint unit) {
@@ -183,6 +193,7 @@ void GpuScene::drawRange(const Draw& draw) const { gl::drawIndexedTriangles(draw
 void GpuScene::draw(const SurfacePrograms& programs, const View& view, const Selection* only) const {
   const Selection& drawn = only ? *only : all_;
   drawn.vertexArray_.bind();
+  if (coats_) coats_->bind(UNIT_COAT);
   const bool isotropic = !view.anisotropic && isotropic_;
   if (isotropic) isotropic_->bind(UNIT_DIFFUSE);
   for (const bool masked : {false, true}) {
@@ -273,7 +284,9 @@ GpuScene::Selection GpuScene::covering(const glm::mat4& clipFromWorld, int size)
 }
 
 std::size_t GpuScene::gpuBytes() const {
-  std::size_t bytes = vertices_.bytes() + all_.gpuBytes() + (white_ ? white_->bytes() : 0);
+  std::size_t bytes = vertices_.bytes() + all_.gpuBytes();
+  for (const std::optional<gl::Texture>* texture : {&white_, &coats_})
+    if (*texture) bytes += (*texture)->bytes();
   for (const gl::Texture& texture : textures_) bytes += texture.bytes();
   return bytes;
 }

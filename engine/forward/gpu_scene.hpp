@@ -75,7 +75,7 @@ class GpuScene {
  private:
   struct Surface {
     glm::vec3 diffuse, specular, emission;
-    float shininess;
+    float alpha;  ///< of the coat
     int diffuseTexture = -1, maskTexture = -1, emissionTexture = -1, normalTexture = -1, metalTexture = -1;
     bool masked = false;
     float normalScale = 0.0f;  ///< 0: no normal map
@@ -92,7 +92,7 @@ class GpuScene {
   gl::Buffer vertices_;
   Selection all_;
   std::vector<gl::Texture> textures_;
-  std::optional<gl::Texture> white_;
+  std::optional<gl::Texture> white_, coats_;
   std::optional<gl::Sampler> isotropic_;  ///< if textures are filtered anisotropically
   std::vector<Surface> surfaces_;
   std::uint32_t opaqueIndexCount_ = 0;  ///< opaque meshes come first in the index buffer

@@ -7,6 +7,7 @@
 #include "irradiance_cache/emission_points.hpp"
 #include "rays/light_table.hpp"
 #include "rsm/rsm_gather.hpp"
+#include "scene/coat.hpp"
 #include "scene/texture_mean.hpp"
 #include "shared/irradiance_cache.h"
 
@@ -30,11 +31,12 @@ constexpr double kLeft = 1.0 / 512.0;  // share of the light that all bounces ma
 double largestAlbedo(const Scene& scene) {
   double largest = 0.0;
   for (const Mesh& mesh : scene.meshes) {
-    const Material& material = scene.materials[static_cast<std::size_t>(mesh.material)];
-    glm::dvec3 albedo(material.diffuse);
+    Material material = scene.materials[static_cast<std::size_t>(mesh.material)];
     if (material.diffuseTexture >= 0)
-      albedo *= meanColour(scene.textures[static_cast<std::size_t>(material.diffuseTexture)].bitmap);
-    largest = std::max({largest, albedo.x, albedo.y, albedo.z});
+      material.diffuse *=
+          glm::vec3(meanColour(scene.textures[static_cast<std::size_t>(material.diffuseTexture)].bitmap));
+    const glm::vec3 albedo = wholeReflectance(material);
+    largest = std::max(largest, static_cast<double>(std::max({albedo.x, albedo.y, albedo.z})));
   }
   return std::min(largest, 1.0);
 }

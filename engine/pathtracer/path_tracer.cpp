@@ -166,7 +166,8 @@ void PathTracer::resize(glm::ivec2 size) {
 gl::ShaderFlags PathTracer::flags() const {
   const bool asked = scene_->hasLights();
   gl::ShaderFlags all = scene_->flags();
-  all.insert(all.end(), {{"MIRRORS", features_.mirrors},
+  all.insert(all.end(), {{"DIFFUSE_ONLY", settings_.diffuseOnly},
+                         {"MIRRORS", features_.mirrors},
                          {"DIELECTRICS", features_.dielectrics},
                          {"INTERIORS", hasInteriors()},
                          {"TOUCHING", hasInteriors() && touching_},
@@ -175,7 +176,7 @@ gl::ShaderFlags PathTracer::flags() const {
                          {"WALKS", features_.denseMedia},
                          {"HETEROGENEOUS", features_.heterogeneousMedia},
                          {"VOLUME_EMISSION", features_.volumeEmission},
-                         {"GLOSSY", features_.conductors || features_.roughDielectrics},
+                         {"GLOSSY", features_.conductors || features_.roughDielectrics || scene_->hasCoats()},
                          {"ROUGH_DIELECTRICS", features_.roughDielectrics},
                          {"BACKGROUND", features_.background},
                          {"MIS", asked && (features_.emission || features_.environmentPicture) &&

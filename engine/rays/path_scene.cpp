@@ -2,6 +2,9 @@
 
 #include "rays/light_table.hpp"
 #include "rays/texture_atlas.hpp"
+#include "scene/coat.hpp"
+#include "shared/bindings.h"
+#include "shared/coat.h"
 
 #include <array>
 #include <bit>
@@ -38,22 +41,34 @@ PathScene::PathScene(const Scene& scene, const SceneFeatures& features, const gl
     const Material& from = scene.materials[i];
     shared::PathMaterial& to = materials[i];
     to.kind = kindOf(from);
-    if (settings.diffuseOnly && to.kind != PATH_NONE) to.kind = PATH_DIFFUSE;
     to.albedo = from.diffuse;
     to.specular = from.specular;
     to.roughness = from.roughness < kSmoothest ? 0.0f : std::min(from.roughness, 1.0f);
+    to.mapRoughness = from.metalMap ? from.metalMap->roughness : -1.0f;
+    if (settings.diffuseOnly && to.kind != PATH_NONE) {
+      if (to.kind == PATH_MIRROR || to.kind == PATH_CONDUCTOR) to.albedo = glm::vec3(0.0f);
+      if (to.kind == PATH_DIELECTRIC) to.specular = glm::vec3(0.0f);
+      to.kind = PATH_DIFFUSE;
+    }
+    const bool isCoated = to.specular != glm::vec3(0.0f) || to.mapRoughness >= 0.0f;
+    if (to.kind == PATH_DIFFUSE && isCoated) {
+      if (!settings.diffuseOnly) to.kind = PATH_COATED;
+      to.roughness = std::max(to.roughness, static_cast<float>(COAT_LEAST_ALPHA));
+      hasCoats_ = true;
+    }
     to.emission = from.emissionTexture >= 0 ? from.emissionScale : from.emission;
     to.ior = from.ior;
     to.boundary = static_cast<std::uint32_t>(rankOfMaterial.empty() ? -1 : rankOfMaterial[i]);
     to.normalScale = from.normalScale;
     to.metallic = from.metalMap ? from.metalMap->metallic : -1.0f;
-    if (from.metalMap) {
-      to.albedo = from.metalMap->base;
-      to.roughness = from.metalMap->roughness * from.metalMap->roughness;
-      if (to.kind == PATH_CONDUCTOR) to.kind = PATH_DIFFUSE;  // the texel decides
-    }
+    if (from.metalMap) to.albedo = from.metalMap->base;
     to.diffuseTexture.layer = to.maskTexture.layer = to.emissionTexture.layer = to.normalTexture.layer =
         to.metalTexture.layer = PATH_NO_TEXTURE;
+  }
+  if (hasCoats_) {
+    coats_.emplace("path coats", gl::Format::rgba32f, glm::ivec2(COAT_COSINES, COAT_ALPHAS),
+                   gl::Sampling{gl::Filter::linear, gl::Filter::linear});
+    coats_->upload(gl::Texels::rgbaFloat, coatTable().data());
   }
   const bool textured = features_.diffuseTextures || features_.alphaMasks || features_.emissionTextures ||
                         features_.normalMaps || features_.metalMaps;
@@ -230,6 +245,7 @@ void PathScene::bind() const {
   if (atlas_) atlas_->bind(kAtlasUnit);
   else if (values_) values_->bind(kAtlasUnit);  // declared with any texture; no material reads it
   if (values_) values_->bind(kValuesUnit);
+  if (coats_) coats_->bind(UNIT_COAT);
   if (environmentPicture_) environmentPicture_->bind(kEnvironmentUnit);
   if (environmentTable_) environmentTable_->bind(kEnvironmentTableUnit);
   if (environmentRows_) environmentRows_->bind(kEnvironmentRowsUnit);
@@ -240,6 +256,7 @@ gl::ShaderFlags PathScene::flags() const {
            features_.diffuseTextures || features_.emissionTextures || features_.normalMaps || features_.metalMaps},
           {"NORMAL_MAPS", features_.normalMaps},
           {"METAL_MAPS", features_.metalMaps},
+          {"COATS", hasCoats_},
           {"ALPHA_MASKS", features_.alphaMasks},
           {"SMOOTH_NORMALS", features_.smoothNormals},
           {"TRIANGLE_WORDS", triangleWords_},
@@ -261,7 +278,7 @@ void PathScene::fill(shared::PathConstants& constants) const {
 std::size_t PathScene::gpuBytes() const {
   std::size_t bytes = rays_.gpuBytes() + triangles_.bytes() + materials_.bytes() + lights_.bytes();
   for (const std::optional<gl::Texture>* texture :
-       {&atlas_, &values_, &environmentPicture_, &environmentTable_, &environmentRows_})
+       {&atlas_, &values_, &coats_, &environmentPicture_, &environmentTable_, &environmentRows_})
     if (*texture) bytes += (*texture)->bytes();
   return bytes;
 }

@@ -39,8 +39,7 @@ gl::Buffer storageOf(const std::string& name, const std::vector<T>& values, cons
 class PathScene {
  public:
   struct Settings {
-    bool diffuseOnly =
-        false;  ///< treat every scattering surface as Lambert with its `diffuse`, as forward shading does
+    bool diffuseOnly = false;  ///< treat every scattering surface as Lambert with its wholeReflectance (scene/coat.hpp)
     bool nextEvent = true;  ///< with a table of lights for sampling
     RaySceneSettings rays;
   };
@@ -49,13 +48,14 @@ class PathScene {
   PathScene(const Scene& scene, const SceneFeatures& features, const gl::Capabilities& capabilities,
             const Settings& settings, const std::vector<int>& rankOfMaterial = {});
 
-  /// Storage blocks 2, 3, 4; texture units 0, 1, 2, 4, 60, 61, 62.
+  /// Storage blocks 2, 3, 4; texture units 0, 1, 2, 4, 60, 61, 62, 63.
   void bind() const;
   /// Flags for the shaders named above.
   gl::ShaderFlags flags() const;
   /// Fills in the environment and the probability of sampling it.
   void fill(shared::PathConstants& constants) const;
   bool hasLights() const { return lightCount_ > 0; }
+  bool hasCoats() const { return hasCoats_; }
   const RayScene& rays() const { return rays_; }
   const glm::dvec3& origin() const { return rays_.origin(); }
   const Hash& hash() const { return hash_; }  ///< over everything that affects paths
@@ -74,7 +74,8 @@ class PathScene {
   std::size_t lightCount_ = 0;
   shared::PathConstants constants_{};
   gl::Buffer triangles_, materials_, lights_;
-  std::optional<gl::Texture> atlas_, values_, environmentPicture_, environmentTable_, environmentRows_;
+  bool hasCoats_ = false;
+  std::optional<gl::Texture> atlas_, values_, coats_, environmentPicture_, environmentTable_, environmentRows_;
   Hash hash_;
 };
 

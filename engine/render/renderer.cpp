@@ -120,12 +120,11 @@ SurfacePrograms Renderer::surfacePrograms(gl::ProgramLibrary& programs, bool ins
   const gl::ShaderFlags own = technique_ ? technique_->surfaceFlags() : gl::ShaderFlags{};
   const auto loadSurface = [&](const std::string& name, bool masked) {
     gl::ShaderFlags flags = gpuScene_->materialFlags(masked);
-    const bool showsRest = settings_.component != Component::indirect;  // specular and emission belong to direct light
+    const bool showsRest = settings_.component != Component::indirect;  // emission belongs to direct light
     flags.insert(flags.end(), {{"SUN", sunShadow_.has_value()},
                                {"SUN_CASCADES", sunShadow_ ? sunShadow_->cascades() : 0},
                                {"SPOTS", localLights_ ? static_cast<int>(spots_.size()) : 0},
                                {"POINTS", localLights_ ? static_cast<int>(points_.size()) : 0},
-                               {"SPECULAR", features_.specular && showsDirect()},
                                {"EMISSION", features_.emission && showsRest},
                                {"INSPECTED", inspected}});
     for (const char* flag : {"HAZE", "SHOW_REFUSED", "INDIRECT_SPECULAR"})  // 0 unless the technique sets them

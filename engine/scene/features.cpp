@@ -1,6 +1,8 @@
 // SceneFeatures from a scene: one pass over the drawn meshes.
 #include "scene/features.hpp"
 
+#include "scene/coat.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -89,16 +91,14 @@ SceneFeatures analyse(const Scene& scene) {
     const Material& material = scene.materials[static_cast<std::size_t>(mesh.material)];
     features.diffuseTextures |= material.diffuseTexture >= 0;
     features.alphaMasks |= material.alphaMasked;
-    features.specular |= anyPositive(material.specular);
+    features.specular |= hasCoat(material);
     features.emission |= anyPositive(material.emission);
     features.emissionTextures |= anyPositive(material.emission) && material.emissionTexture >= 0;
     features.normalMaps |= material.normalTexture >= 0 && material.normalScale != 0.0f;
     features.metalMaps |= material.metalMap.has_value();
     features.smoothNormals = features.smoothNormals || isSmooth(scene, mesh);
     features.mirrors |= material.bsdf == Bsdf::mirror;
-    // A picture's mean may be non-metallic even if some texels are metal.
-    features.conductors |= material.bsdf == Bsdf::conductor ||
-                           (material.bsdf == Bsdf::diffuse && material.metalMap && material.metalMap->metallic > 0.5f);
+    features.conductors |= material.bsdf == Bsdf::conductor;
     features.dielectrics |= material.bsdf == Bsdf::dielectric;
     features.roughDielectrics |= material.bsdf == Bsdf::dielectric && material.roughness > 0.0f;
     features.nullBoundaries |= material.bsdf == Bsdf::none;
@@ -108,7 +108,7 @@ SceneFeatures analyse(const Scene& scene) {
       features.denseMedia = features.denseMedia || isDense(scene.media[static_cast<std::size_t>(material.interior)],
                                                            glm::length(mesh.bounds.extent()));
     // A texture only scales the factor down, so the factor alone decides whether anything can be reflected.
-    reflects |= anyPositive(material.diffuse);
+    reflects |= anyPositive(material.diffuse) || anyPositive(material.specular);
   }
   features.directionalLight = scene.sun && anyPositive(scene.sun->irradiance);
   features.background = anyPositive(scene.background);

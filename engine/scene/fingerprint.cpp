@@ -16,7 +16,7 @@ void add(Hash& h, const Material& m) {
   h.add(static_cast<int>(m.bsdf));
   h.add(m.roughness), h.add(m.ior), h.add(m.interior), h.add(m.priority);
   h.add(m.diffuse), h.add(m.specular), h.add(m.emission);
-  h.add(m.shininess), h.add(m.opacity), h.add(m.diffuseTexture), h.add(m.alphaTexture), h.add(m.alphaMasked);
+  h.add(m.opacity), h.add(m.diffuseTexture), h.add(m.alphaTexture), h.add(m.alphaMasked);
   if (m.emissionTexture >= 0) h.add(m.emissionTexture), h.add(m.emissionScale);
   if (m.normalTexture >= 0) h.add(m.normalTexture), h.add(m.normalScale);
   if (m.metalMap)

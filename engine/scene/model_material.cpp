@@ -1,12 +1,11 @@
 // The parts of a material that formats share.
 // - Metallic-roughness (glTF 2.0, appendix B): diffuse = base (1 - metallic), specular = mix(0.04, base, metallic),
-//   Blinn-Phong exponent 2 / roughness^4 - 2 (alpha = roughness^2; B. Karis, "Specular BRDF Reference", 2013). Code
-//   that treats a material as a whole uses the mean of its pictures, which preserves a surface's total.
-// - Scattering in the path tracer (Material::bsdf; the real-time techniques do not read it): transmission above 0.5 is
-//   a dielectric of index 1.5, otherwise metallic above 0.5 a conductor of the base colour; alpha = roughness^2.
-//   Everything else is Lambertian.
+//   alpha = roughness^2. Code that treats a material as a whole uses the mean of its pictures, which preserves a
+//   surface's total. Transmission above 0.5 is a dielectric of index 1.5.
+// - Ks and Ns of MTL are a coat: Ks its reflectance at normal incidence, the lobe as wide as Blinn-Phong's of that
+//   exponent. Kd stays what the surface reflects diffusely (scene/coat.hpp, baseUnderCoat).
 #include "scene/model_import.hpp"
-#include "scene/shininess.hpp"
+#include "scene/coat.hpp"
 #include "scene/texture_mean.hpp"
 
 #include <algorithm>
@@ -26,7 +25,9 @@ Material colours(const aiMaterial& source, const glm::vec3& tint) {
   material.specular = colourOf(source, AI_MATKEY_COLOR_SPECULAR).value_or(material.specular);
   material.emission =
       colourOf(source, AI_MATKEY_COLOR_EMISSIVE, std::numeric_limits<float>::max()).value_or(material.emission);
-  material.shininess = clampedNumber(numberOf(source, AI_MATKEY_SHININESS).value_or(1.0f), 1.0f, 1e6f, 1.0f);
+  material.diffuse = baseUnderCoat(material.diffuse, material.specular);
+  material.roughness =
+      alphaOfExponent(clampedNumber(numberOf(source, AI_MATKEY_SHININESS).value_or(1.0f), 0.0f, 1e6f, 1.0f));
   return material;
 }
 
@@ -38,13 +39,11 @@ glm::vec3 setMetallicRoughness(Material& material, const aiMaterial& source, con
   const float roughness =
       clampedNumber(numberOf(source, AI_MATKEY_ROUGHNESS_FACTOR).value_or(1.0f) * map.y, 0.0f, 1.0f, 1.0f);
   const std::optional<glm::vec3> given = colourOf(source, AI_MATKEY_BASE_COLOR);
-  const glm::vec3 base = given ? *given * tint : material.diffuse;
+  const glm::vec3 base = tint * given.value_or(colourOf(source, AI_MATKEY_COLOR_DIFFUSE).value_or(glm::vec3(1.0f)));
   material.diffuse = base * (1.0f - metallic);
   material.specular = glm::mix(glm::vec3(0.04f), base, metallic);
   material.roughness = roughness * roughness;
-  material.shininess = shininessOf(material.roughness);
   if (transmission > 0.5f) material.bsdf = Bsdf::dielectric;
-  else if (metallic > 0.5f) material.bsdf = Bsdf::conductor;
   return base;
 }
 

@@ -47,9 +47,9 @@ struct Texture {
   Bitmap bitmap;  ///< 8-bit; albedo maps are sRGB-encoded
 };
 
-/// How a surface scatters light in the path tracer. The real-time techniques read only `diffuse` and `specular`.
+/// How a surface scatters light. Real-time techniques show only diffuse and rough conductors as the path tracer does.
 enum class Bsdf {
-  diffuse,  ///< Lambert; a `diffuse` of 0 is black
+  diffuse,  ///< Lambert, under a rough coat if `specular` is above 0 (scene/coat.hpp)
   mirror,  ///< reflects `specular`, smooth
   conductor,  ///< GGX of `roughness`, Fresnel by Schlick between `specular` at normal incidence and 1
   dielectric,  ///< reflects and refracts by `ior`; smooth at roughness 0, else GGX
@@ -58,7 +58,7 @@ enum class Bsdf {
 
 /// A surface whose metallic share, roughness or highlight vary by texel [GLTF2, appendix B]: base colour b = `base` *
 /// diffuseTexture, m = `metallic` * blue, r = `roughness` * green; then diffuse b (1 - m), specular mix(0.04, b, m),
-/// GGX alpha r^2, Blinn-Phong exponent 2 / r^4 - 2.
+/// GGX alpha r^2. A negative roughness: the material's own specular and roughness.
 struct MetalMap {
   glm::vec3 base{1.0f};
   float metallic = 1.0f;
@@ -69,13 +69,12 @@ struct MetalMap {
 struct Material {
   std::string name;
   Bsdf bsdf = Bsdf::diffuse;
-  float roughness = 0.0f;  ///< GGX alpha, 0..1; 0: smooth
+  float roughness = 0.0f;  ///< GGX alpha, 0..1; 0: smooth; a coat's is at least COAT_LEAST_ALPHA
   float ior = 1.5f;  ///< of the inside (against the normal) relative to vacuum
   int interior = -1;  ///< index into Scene::media of the interior of a dielectric or none; -1: vacuum
   int priority = 0;  ///< where two closed dielectrics overlap, the higher one counts [SchmidtBudge2002]
-  glm::vec3 diffuse{0.5f};  ///< albedo factor (Kd), multiplies the texture
-  glm::vec3 specular{0.0f};  ///< Ks
-  float shininess = 1.0f;  ///< Blinn-Phong exponent (Ns)
+  glm::vec3 diffuse{0.5f};  ///< albedo factor of the base, multiplies the texture
+  glm::vec3 specular{0.0f};  ///< reflectance at normal incidence
   glm::vec3 emission{0.0f};  ///< emitted radiance (Ke); with an emission texture, its mean
   glm::vec3 emissionScale{0.0f};  ///< with an emission texture: emitted radiance where that is white
   float opacity = 1.0f;  ///< d
@@ -87,8 +86,7 @@ struct Material {
   int normalTexture =
       -1;  ///< normals, x along u and y along v, as 0.5 + 0.5 n; not sRGB-encoded (shaders/lib/normal_map.glsl)
   float normalScale = 1.0f;  ///< on their x and y
-  std::optional<MetalMap>
-      metalMap;  ///< then diffuse, specular, shininess, roughness and bsdf are those of the texture's mean
+  std::optional<MetalMap> metalMap;  ///< then diffuse, specular and roughness are those of the texture's mean
 };
 
 /// A run of indices drawn with one material.

@@ -2,7 +2,6 @@
 
 #include "scene/density_file.hpp"
 #include "scene/media_catalogue.hpp"
-#include "scene/shininess.hpp"
 
 #include <limits>
 #include <map>
@@ -169,9 +168,6 @@ void readMaterial(const Value& object, Media& media, Material& material) {
           {"specular", [&](const Value& v) { material.specular = glm::vec3(v.vectorBetween(0.0, 1.0, kReflectance)); }},
           {"emission", [&](const Value& v) { material.emission = v.light(); }},
       });
-  // Forward shading shows a conductor by its highlight; what the model's file says of it belongs to another roughness.
-  if (material.bsdf == Bsdf::conductor && (object.has("roughness") || object.has("bsdf")))
-    material.shininess = shininessOf(material.roughness);
   if (interior && !object.has("bsdf")) material.bsdf = Bsdf::dielectric;
   if (interior && material.bsdf != Bsdf::dielectric && material.bsdf != Bsdf::none)
     object.at("interior").fail("no interior, as only \"dielectric\" and \"none\" have an inside");

@@ -1,5 +1,7 @@
 #include "scene/texture_mean.hpp"
 
+#include "scene/coat.hpp"
+
 #include "scene/triangle_parts.hpp"
 
 #include <algorithm>
@@ -54,14 +56,25 @@ glm::dvec3 meanAlbedo(const Scene& scene, const Material& material, const std::a
     return texture >= 0 ? &scene.textures[static_cast<std::size_t>(texture)].bitmap : nullptr;
   };
   const Bitmap* colour = bitmap(material.diffuseTexture);
-  if (!material.metalMap)
-    return colour ? glm::dvec3(material.diffuse) * meanTexture(*colour, uv) : glm::dvec3(material.diffuse);
+  Material mean = material;
+  if (!material.metalMap) {
+    if (colour) mean.diffuse *= glm::vec3(meanTexture(*colour, uv));
+    return glm::dvec3(wholeReflectance(mean));
+  }
   const MetalMap& map = *material.metalMap;
   const Bitmap* metal = bitmap(map.texture);
-  return glm::dvec3(map.base) * meanOverParts(uv, [&](const glm::dvec2& at) {
-           const double metallic = static_cast<double>(map.metallic) * (metal ? bytesAt(*metal, at)[2] / 255.0 : 1.0);
-           return (colour ? texelAt(*colour, at) : glm::dvec3(1.0)) * (1.0 - metallic);
-         });
+  const auto metallicAt = [&](const glm::dvec2& at) {
+    return static_cast<double>(map.metallic) * (metal ? bytesAt(*metal, at)[2] / 255.0 : 1.0);
+  };
+  const auto colourAt = [&](const glm::dvec2& at) {
+    return glm::dvec3(map.base) * (colour ? texelAt(*colour, at) : glm::dvec3(1.0));
+  };
+  mean.diffuse =
+      glm::vec3(meanOverParts(uv, [&](const glm::dvec2& at) { return colourAt(at) * (1.0 - metallicAt(at)); }));
+  if (map.roughness >= 0.0f)
+    mean.specular = glm::vec3(meanOverParts(
+        uv, [&](const glm::dvec2& at) { return glm::mix(glm::dvec3(0.04), colourAt(at), metallicAt(at)); }));
+  return glm::dvec3(wholeReflectance(mean));
 }
 
 }  // namespace lucerna

@@ -1,14 +1,13 @@
 // Forward shading of surfaces: direct light of the sun, spot and omnidirectional lights with filtered shadow maps;
 // emission; what the frame's technique adds.
-// Output: radiance, linear, scene units. Lambert: L = albedo / pi * E. Specular: Blinn-Phong, normalised so that its
-// energy does not depend on the exponent, (n + 8) / (8 pi) [AkenineMoller2018, section 9.8].
+// Output: radiance, linear, scene units. A Lambertian base, L = albedo / pi * E, under a coat (lib/coat.glsl).
 //
 // A technique's own fragment shader (shaders/NAME/surface.frag) includes this file last. It defines before:
 //   #define INDIRECT 1   or 0, and then not the function
 //   vec3 indirectIrradiance(vec3 position, vec3 normal, vec3 meshNormal)   W per square scene unit; all light but that
 //     of sun, spot and omnidirectional lights: the irradiance cache includes the sky and emissive surfaces
 // normal: for shading, possibly normal-mapped; meshNormal: the mesh's own; both on the viewer's side. And with a flag:
-//   INDIRECT_SPECULAR: vec3 indirectSpecular(position, normal, toCamera, albedo, specular, shininess)   radiance
+//   INDIRECT_SPECULAR: vec3 indirectSpecular(position, normal, toCamera, coat)   radiance that the coat reflects of it
 //   SHOW_REFUSED: bool indirectIsRefused()   whether to paint the pixel red
 #include "lib/frame.glsl"
 #include "lib/sh.glsl"
@@ -30,9 +29,12 @@ layout(location = 0) out vec4 radiance;
 #include "forward/lights.glsl"
 #endif
 
-#if SPECULAR || INDIRECT_SPECULAR
-#include "lib/highlight.glsl"
-Highlight highlight;
+#if SPECULAR
+#include "lib/material_coat.glsl"
+#include "lib/ggx.glsl"
+#include "lib/tangent.glsl"
+Coat coat;
+bool isCoated;
 #endif
 #if EMISSION
 #include "lib/emission.glsl"
@@ -45,9 +47,15 @@ Highlight highlight;
 vec3 reflection(vec3 albedo, vec3 normal, vec3 toCamera, vec3 toLight) {
   vec3 reflected = albedo / kPi;
 #if SPECULAR
-  vec3 halfway = normalize(toCamera + toLight);
-  reflected += highlight.specular *
-               ((highlight.shininess + 8.0) / (8.0 * kPi) * pow(max(dot(normal, halfway), 0.0), highlight.shininess));
+  if (isCoated) {
+    vec3 t, b;
+    tangentFrame(normal, t, b);
+    vec3 o = vec3(dot(toCamera, t), dot(toCamera, b), dot(toCamera, normal)),
+         i = vec3(dot(toLight, t), dot(toLight, b), dot(toLight, normal));
+    float density, facets = ggxReflect(o, i, coat.alpha, density);
+    reflected *= coatTransmission(coat, o.z, i.z);
+    if (facets > 0.0) reflected += facets / i.z * coatFresnel(coat, max(dot(o, normalize(o + i)), 0.0));
+  }
 #endif
   return reflected;
 }
@@ -62,8 +70,9 @@ void add(inout vec3 result, vec3 radiance, int term) {
 
 void main() {
   vec3 albedo = materialAlbedo(vTexCoord), mapped = materialNormal(vNormal, vPosition, vTexCoord);
-#if SPECULAR || INDIRECT_SPECULAR
-  highlight = materialHighlight(vTexCoord);
+#if SPECULAR
+  coat = materialCoat(vTexCoord);
+  isCoated = any(greaterThan(coat.specular, vec3(0.0)));
 #endif
 #if EMISSION
   vec3 emitted = materialEmitted(vTexCoord);
@@ -111,11 +120,13 @@ void main() {
 #endif
 #if INDIRECT
   vec3 indirect = indirectIrradiance(vPosition, normal, meshNormal);
+#if SPECULAR
+  if (isCoated) albedo *= 1.0 - coatAlbedo(coat, dot(normal, toCamera));  // as of light that is the same from all sides
+#endif
   result += albedo / kPi * indirect;
 #endif
 #if INDIRECT_SPECULAR
-  add(result, indirectSpecular(vPosition, normal, toCamera, albedo, highlight.specular, highlight.shininess),
-      INSPECTED_GLOSSY);
+  if (isCoated) add(result, indirectSpecular(vPosition, normal, toCamera, coat), INSPECTED_GLOSSY);
 #endif
 #if EMISSION
   add(result, emitted, INSPECTED_EMISSION);

@@ -188,7 +188,7 @@ vec3 followPath(Surface surface, uint triangle, PathNumbers numbers) {
     }
 #endif
     if (last || scatterings >= tracer.maxScatterings) break;
-    throughput *= albedoAt(surface);
+    throughput *= wholeAlbedoAt(surface);
     // Russian roulette [Arvo1990]
     float survival = scatterings < 3u ? 1.0 : min(max(throughput.x, max(throughput.y, throughput.z)), 1.0);
     if (!(unitFloat(randomWords(numbers, scatterings, kPurposeChoice).x) < survival)) break;

@@ -3,15 +3,15 @@
 // A surface reflects radiance L(i) into direction o as the integral of f(o, i) L(i) <n, i> over its hemisphere. With L
 // of two bands, L(i) = Y00 l0 - Y1 <l1, i> (light from i travels along -i), that is exactly
 //   Y00 rho l0 - Y1 <l1, m>,  rho = integral of f <n, i>,  m = integral of f <n, i> i,
-// so all that a lobe needs is its reflectance rho and its moment m (lpv/glossy_lobes.hpp has the table). f: GGX with
-// Schlick's Fresnel term about `specular` [Walter2007]; alpha from the exponent, 2 / alpha^2 - 2.
+// so all that a lobe needs is its reflectance rho and its moment m (lpv/glossy_lobes.hpp has the table). f: the coat's
+// reflection (lib/coat.glsl).
 // L is what the first surface along a ray of the lobe sends, as radiance does not change along a ray (a constant
 // radiance is always reflected as rho L). A march finds it: surfels of area A cover A cos / s^2 of a ray's cross
 // section in a cell, which band 1 of their potential A / s^2 lobe(n) holds as A / (2 s^2) cos. A ray meets a layer of
 // them 1 / cos times, so a closed surface covers all of it. Light is read once, a cell before half of the ray is
 // covered: behind a surface it is dark, and software renderers would run a lookup in every step.
-// Bound: rho takes at most what the diffuse reflection leaves, 1 - albedo.
 #include "shared/lpv.h"
+#include "lib/coat.glsl"
 #include "lpv/radiance.glsl"
 layout(binding = UNIT_LPV_LOBES) uniform sampler2D lpvLobes;
 
@@ -66,16 +66,15 @@ mat3x4 lpvLightAlong(vec3 position, vec3 direction) {
   return lpvRadiance(at);
 }
 
-// Radiance reflected towards the camera. normal: on the camera's side. specular: reflectance at normal incidence.
-vec3 lpvGlossy(vec3 position, vec3 normal, vec3 toCamera, vec3 albedo, vec3 specular, float shininess) {
-  if (all(equal(specular, vec3(0.0)))) return vec3(0.0);
+// Radiance reflected towards the camera. normal: on the camera's side.
+vec3 lpvGlossy(vec3 position, vec3 normal, vec3 toCamera, Coat coat) {
   float cosine = max(dot(normal, toCamera), 0.0);
   vec3 across = cosine * normal - toCamera;
   // Towards the mirror direction; any tangent where the camera looks along the normal.
   if (dot(across, across) < 1e-8) across = cross(normal, abs(normal.x) < 0.7 ? vec3(1, 0, 0) : vec3(0, 1, 0));
   across = normalize(across);
   vec3 facets, grazing;
-  glossyLobe(cosine, sqrt(2.0 / (shininess + 2.0)), facets, grazing);
+  glossyLobe(cosine, coat.alpha, facets, grazing);
   vec3 direction = normalize(facets.y * across + facets.z * normal);
 
   // Directions spread evenly over a cap about the mean [Vogel1979]. Their mean, (1 + the cosine at its border) / 2, is
@@ -96,8 +95,7 @@ vec3 lpvGlossy(vec3 position, vec3 normal, vec3 toCamera, vec3 albedo, vec3 spec
 
   vec3 reflected;
   for (int c = 0; c < 3; ++c) {
-    vec3 lobe = mix(grazing, facets, specular[c]);  // F0 + (1 - F0) (1 - <o, h>)^5
-    lobe *= clamp((1.0 - albedo[c]) / max(lobe.x, 1e-6), 0.0, 1.0);
+    vec3 lobe = coat.specular[c] * facets + (coatGrazing(coat.specular) - coat.specular[c]) * grazing;
     vec3 moment = lobe.y * across + lobe.z * normal;
     reflected[c] = max(dot(light[c], vec4(kY00 * lobe.x, -kY1 * moment)), 0.0);
   }

@@ -5,8 +5,7 @@ struct Probe {
   vec4 position;
   vec4 normal;
   vec4 toCamera;
-  vec4 albedo;
-  vec4 specular;  // w: shininess
+  vec4 specular;  // w: alpha
 };
 layout(std430, binding = 0) readonly buffer Probes { Probe probes[]; };
 layout(std430, binding = 1) writeonly buffer Radiances { vec4 radiances[]; };
@@ -15,6 +14,6 @@ void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= uint(probes.length())) return;
   Probe p = probes[i];
-  radiances[i] = vec4(
-      lpvGlossy(p.position.xyz, p.normal.xyz, p.toCamera.xyz, p.albedo.rgb, p.specular.rgb, p.specular.w), 0.0);
+  Coat coat = Coat(p.specular.rgb, p.specular.w);
+  radiances[i] = vec4(lpvGlossy(p.position.xyz, p.normal.xyz, p.toCamera.xyz, coat), 0.0);
 }

@@ -5,8 +5,8 @@
 vec3 indirectIrradiance(vec3 position, vec3 normal, vec3 meshNormal) { return lpvIrradiance(position, normal); }
 #if INDIRECT_SPECULAR
 #include "lpv/glossy.glsl"
-vec3 indirectSpecular(vec3 position, vec3 normal, vec3 toCamera, vec3 albedo, vec3 specular, float shininess) {
-  return lpvGlossy(position, normal, toCamera, albedo, specular, shininess);
+vec3 indirectSpecular(vec3 position, vec3 normal, vec3 toCamera, Coat coat) {
+  return lpvGlossy(position, normal, toCamera, coat);
 }
 #endif
 #include "forward/surface.glsl"

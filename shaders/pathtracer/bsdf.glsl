@@ -1,26 +1,64 @@
 // The surface that a path meets: its BSDF, evaluated and sampled.
 
-// The scattering properties at a path's hit. Lambert: `albedo` is the reflectance; mirrors and conductors: the
-// reflectance at normal incidence.
+// The scattering properties at a path's hit. Lambert, coated or not: `albedo` is the base's reflectance; mirrors and
+// conductors: the reflectance at normal incidence.
 struct Bsdf {
   uint kind;
   vec3 albedo;
   float roughness;
   float eta;       // dielectrics: index on the path's side over that on the other
   vec3 normal;     // for shading, on the path's side
+#if COATS
+  Coat coat;
+#endif
 };
+
+// A Lambertian base, with or without a coat.
+bool isOpaque(Bsdf bsdf) {
+#if COATS
+  return bsdf.kind == PATH_DIFFUSE || bsdf.kind == PATH_COATED;
+#else
+  return bsdf.kind == PATH_DIFFUSE;
+#endif
+}
 
 bool isSmooth(Bsdf bsdf) {
 #if GLOSSY
-  return bsdf.kind == PATH_MIRROR || (bsdf.kind != PATH_DIFFUSE && bsdf.roughness == 0.0);
+  return bsdf.kind == PATH_MIRROR || (!isOpaque(bsdf) && bsdf.roughness == 0.0);
 #else
-  return bsdf.kind != PATH_DIFFUSE;
+  return !isOpaque(bsdf);
 #endif
 }
+
+#if COATS
+// Probability with which scatter() samples the coat rather than the base: by what they reflect. 0 where the shading
+// normal faces away from the path.
+float coatShare(Bsdf bsdf, float cosine) {
+  if (!(cosine > 0.0)) return 0.0;
+  vec3 coat = coatAlbedo(bsdf.coat, cosine), base = bsdf.albedo * (1.0 - coat);
+  float most = max(coat.x, max(coat.y, coat.z)), rest = max(base.x, max(base.y, base.z));
+  return rest > 0.0 ? clamp(most / (most + rest), 0.1, 0.9) : 1.0;
+}
+
+// evaluate() of a coated surface; share: coatShare of `o`.
+vec3 evaluateCoated(Bsdf bsdf, vec3 o, vec3 i, float share, out float pdf) {
+  vec3 t, b;
+  tangentFrame(bsdf.normal, t, b);
+  vec3 lo = vec3(dot(o, t), dot(o, b), dot(o, bsdf.normal)), li = vec3(dot(i, t), dot(i, b), dot(i, bsdf.normal));
+  float facetsPdf, facets = ggxReflect(lo, li, bsdf.coat.alpha, facetsPdf), lambert = max(li.z, 0.0) / kPi;
+  pdf = mix(lambert, facetsPdf, share);
+  vec3 value = bsdf.albedo * coatTransmission(bsdf.coat, lo.z, li.z) * lambert;
+  if (facets > 0.0) value += facets * coatFresnel(bsdf.coat, clamp(dot(o, normalize(o + i)), 0.0, 1.0));
+  return value;
+}
+#endif
 
 // BSDF times the cosine of `i`, and the density with which scatter() draws `i`; not for smooth surfaces. `o` and `i`
 // point away from the surface.
 vec3 evaluate(Bsdf bsdf, vec3 o, vec3 i, out float pdf) {
+#if COATS
+  if (bsdf.kind == PATH_COATED) return evaluateCoated(bsdf, o, i, coatShare(bsdf, dot(o, bsdf.normal)), pdf);
+#endif
 #if GLOSSY
   if (bsdf.kind != PATH_DIFFUSE) {
     vec3 t, b;
@@ -57,6 +95,24 @@ bool scatter(inout Path path, Bsdf bsdf, vec3 geometricNormal, vec2 xi, float ch
     return dot(path.direction, geometricNormal) > 0.0;
   }
   vec3 o = -path.direction;
+#if COATS
+  if (bsdf.kind == PATH_COATED) {
+    float share = coatShare(bsdf, dot(o, bsdf.normal));
+    if (choice < share) {
+      vec3 t, b;
+      tangentFrame(bsdf.normal, t, b);
+      vec3 h = ggxSample(vec3(dot(o, t), dot(o, b), dot(o, bsdf.normal)), bsdf.coat.alpha, xi);
+      h = normalize(h.x * t + h.y * b + h.z * bsdf.normal);
+      path.direction = normalize(2.0 * dot(o, h) * h - o);
+    } else {
+      path.direction = cosineSample(bsdf.normal, xi);
+    }
+    vec3 value = evaluateCoated(bsdf, o, path.direction, share, path.pdf);
+    if (!(path.pdf > 0.0)) return false;
+    path.throughput *= value / path.pdf;
+    return dot(path.direction, geometricNormal) > 0.0;
+  }
+#endif
   vec3 h = bsdf.normal;
   path.pdf = 0.0;
 #if GLOSSY

@@ -116,11 +116,17 @@ void addEmission(inout Path path, Hit hit, Surface surface, PathNumbers numbers)
 
 // iorBeyond: refractive index behind the surface.
 Bsdf bsdfOf(Path path, Surface surface, PathMaterial material, float iorBeyond) {
-  Bsdf bsdf = Bsdf(material.kind, material.specular, material.roughness, 1.0, surface.normal);
+  Bsdf bsdf = Bsdf(material.kind, material.specular, material.roughness, 1.0, surface.normal
+#if COATS
+                   , Coat(vec3(0.0), 1.0)
+#endif
+  );
+  if (isOpaque(bsdf)) bsdf.albedo = DIFFUSE_ONLY != 0 ? wholeAlbedoAt(surface) : albedoAt(surface);
   // For a path that sees the back of the shading normal, mirrors and glass use the geometric normal.
-  if (bsdf.kind != PATH_DIFFUSE && !(dot(surface.normal, path.direction) < 0.0))
-    bsdf.normal = surface.geometricNormal;
-  if (bsdf.kind == PATH_DIFFUSE) bsdf.albedo = albedoAt(surface);
+  else if (!(dot(surface.normal, path.direction) < 0.0)) bsdf.normal = surface.geometricNormal;
+#if COATS
+  if (bsdf.kind == PATH_COATED) bsdf.coat = coatAt(surface);
+#endif
 #if DIELECTRICS
   if (bsdf.kind == PATH_DIELECTRIC) bsdf.eta = path.ior / iorBeyond;
 #endif
@@ -167,9 +173,6 @@ bool handleHit(inout Path path, Hit hit, PathNumbers numbers) {
   if (rank >= 0 && !crossBoundary(beyond, rank, surface.front)) atomicAdd(wrongCrossings, 1u);
 #endif
   PathMaterial material = materials[surface.material];
-#if METAL_MAPS && GLOSSY
-  applyMetalMap(surface, material);
-#endif
 #if NORMAL_MAPS
   applyNormalMap(surface, hit.triangle);
 #endif
@@ -210,7 +213,7 @@ bool handleHit(inout Path path, Hit hit, PathNumbers numbers) {
   take(path);
 #endif
 #if UNOCCLUDED
-  if (path.scatterings == 2u && bsdf.kind == PATH_DIFFUSE) {  // surfaces do not block: continue to those behind
+  if (path.scatterings == 2u && isOpaque(bsdf)) {  // surfaces do not block: continue to those behind
     path.scatterings = 1u;
     path.origin = beside(surface, -surface.geometricNormal);
     path.skip = hit.triangle;

@@ -2,6 +2,9 @@
 // units. A patch's back emits nothing.
 #include "lib/frame.glsl"
 #include "lib/material.glsl"
+#if SPECULAR
+#include "lib/material_coat.glsl"
+#endif
 const float kPi = 3.14159265358979;
 in vec3 vPosition;
 in vec3 vIrradiance;
@@ -24,6 +27,9 @@ layout(location = 0) out vec4 radiance;
 
 void main() {
   vec3 albedo = materialAlbedo(vTexCoord);
+#if SPECULAR
+  albedo = wholeReflectance(materialCoat(vTexCoord), albedo);
+#endif
 #if EMISSION
   vec3 emitted = materialEmitted(vTexCoord);
 #endif

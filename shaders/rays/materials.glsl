@@ -11,6 +11,9 @@ layout(binding = UNIT_VALUE_ATLAS) uniform sampler2DArray valueAtlas;  // for pi
 #if NORMAL_MAPS
 #include "lib/normal_map.glsl"
 #endif
+#if COATS
+#include "lib/coat.glsl"
+#endif
 
 // TRIANGLE_WORDS uvec4 per triangle, floats as their bits:
 // 0: first corner, material; 1: second corner, geometric normal x; 2: third corner, geometric normal y; 3: geometric
@@ -122,18 +125,6 @@ vec2 metalAt(Surface surface) {
   return vec2(map.x, max(materials[surface.material].metallic, 0.0) * map.y);
 }
 
-#if GLOSSY
-// Becomes a metal if the metallic share exceeds one half, like materials without textures.
-void applyMetalMap(Surface surface, inout PathMaterial material) {
-  if (material.metallic < 0.0) return;
-  vec2 metal = metalAt(surface);
-  material.roughness *= metal.x * metal.x;
-  if (material.kind == PATH_DIFFUSE && metal.y > 0.5) {
-    material.kind = PATH_CONDUCTOR;
-    material.specular = mix(vec3(0.04), colourAt(surface), metal.y);
-  }
-}
-#endif
 #endif
 
 vec3 albedoAt(Surface surface) {
@@ -142,6 +133,29 @@ vec3 albedoAt(Surface surface) {
   albedo *= 1.0 - metalAt(surface).y;
 #endif
   return albedo;
+}
+
+#if COATS
+Coat coatAt(Surface surface) {
+#if METAL_MAPS
+  float roughness = materials[surface.material].mapRoughness;
+  if (roughness >= 0.0) {
+    vec2 metal = metalAt(surface);
+    roughness *= metal.x;
+    return Coat(mix(vec3(0.04), colourAt(surface), metal.y), clamp(roughness * roughness, COAT_LEAST_ALPHA, 1.0));
+  }
+#endif
+  return Coat(materials[surface.material].specular, materials[surface.material].roughness);
+}
+#endif
+
+// The albedo of the surface taken as Lambertian.
+vec3 wholeAlbedoAt(Surface surface) {
+#if COATS
+  return wholeReflectance(coatAt(surface), albedoAt(surface));
+#else
+  return albedoAt(surface);
+#endif
 }
 
 #if NORMAL_MAPS

@@ -12,6 +12,9 @@
 #include "lib/frame.glsl"
 #endif
 #include "lib/material.glsl"
+#if SPECULAR
+#include "lib/material_coat.glsl"
+#endif
 #include "lib/spot.glsl"
 #if HAZE
 #include "lib/haze.glsl"
@@ -42,6 +45,9 @@ uniform float texelArea;      // world units squared, across the rays
 
 void main() {
   vec3 albedo = materialAlbedo(vTexCoord);
+#if SPECULAR
+  albedo = wholeReflectance(materialCoat(vTexCoord), albedo);
+#endif
   if (materialCutOut(vTexCoord)) discard;
   vec3 normal = normalize(gl_FrontFacing ? vNormal : -vNormal);
 #if PERSPECTIVE

@@ -41,3 +41,6 @@
 #define UNIT_BVH_NODES 60
 #define UNIT_BVH_TRIANGLES 61
 #define UNIT_VALUE_ATLAS 62
+
+// Programs that shade surfaces with a coat
+#define UNIT_COAT 63

@@ -12,6 +12,7 @@ SHARED_BEGIN
 #define PATH_CONDUCTOR 2u
 #define PATH_DIELECTRIC 3u
 #define PATH_NONE 4u
+#define PATH_COATED 5u  // Lambert under a rough coat
 
 // Kinds of lights.
 #define PATH_LIGHT_SUN 0u
@@ -66,7 +67,7 @@ struct PathMaterial {
   float ior;
   uint boundary;            // the closed boundary it belongs to: index of the material
   float normalScale;
-  float padding;
+  float mapRoughness;       // of a MetalMap, the square root of alpha; negative: `roughness` holds
   PathTexture diffuseTexture;
   PathTexture maskTexture;  // in alpha
   PathTexture emissionTexture;

@@ -24,7 +24,7 @@ struct Need {
 
 const Need kFeatures[] = {{"diffuseTextures", {"diffuseTexture"}, {}},
                           {"alphaMasks", {"maskTexture"}, {}},
-                          {"specular", {"materialSpecular", "materialShininess"}, {}},
+                          {"specular", {"materialSpecular", "materialAlpha"}, {}},
                           {"emission", {"materialEmission"}, {}},
                           {"background", {}, {}},
                           {"environment", {"environmentRadiance"}, {"environment"}},
@@ -104,7 +104,8 @@ TEST_F(FeaturesOff, LeavesNothingBehindAndChangesNothing) {
     }
     // A uniform has no bytes of its own; what has a texture or a buffer does.
     const bool isConstant = std::string_view(need.name) == "environment";
-    const bool isPicture = std::string_view(need.name).ends_with("Textures") ||
+    const bool isPicture = std::string_view(need.name) == "specular" ||  // its table of reflectances
+                           std::string_view(need.name).ends_with("Textures") ||
                            std::string_view(need.name).ends_with("Maps") ||
                            std::string_view(need.name).ends_with("Masks");
     if ((!need.stages.empty() && !isConstant) || isPicture) {

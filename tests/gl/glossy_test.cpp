@@ -53,7 +53,7 @@ GlossyLobe lobeOverVisibleFacets(double cosine, double alpha) {
 }
 
 struct GlossyProbe {
-  glm::vec4 position, normal, toCamera, albedo, specular;  ///< w of specular: shininess
+  glm::vec4 position, normal, toCamera, specular;  ///< w of specular: alpha
 };
 
 /// A volume of one cascade with its minimum in the origin, its coefficients per channel as stored.
@@ -97,7 +97,7 @@ glm::dvec4 lightAlong(const SmallVolume& volume, int channel, const glm::dvec3& 
 /// The reference implementation of shaders/lpv/glossy.glsl: the reflected radiance, from the lobe's own integrals.
 glm::dvec3 reflectedByReference(const SmallVolume& volume, const GlossyProbe& probe) {
   const glm::dvec3 n(probe.normal), o(probe.toCamera), position(probe.position);
-  const double cosine = glm::dot(n, o), alpha = std::sqrt(2.0 / (static_cast<double>(probe.specular.w) + 2.0));
+  const double cosine = glm::dot(n, o), alpha = static_cast<double>(probe.specular.w);
   const glm::dvec3 across = glm::normalize(cosine * n - o);
   const GlossyLobe lobe = lobeOverVisibleFacets(cosine, alpha);
   // A spiral over the cap about the mean whose mean is as long as the lobe's.
@@ -119,7 +119,6 @@ glm::dvec3 reflectedByReference(const SmallVolume& volume, const GlossyProbe& pr
     for (const glm::dvec3& one : cone) light += lightAlong(volume, c, position, one) / static_cast<double>(cone.size());
     const double f0 = probe.specular[c];
     glm::dvec3 moments = f0 * lobe.facets + (1.0 - f0) * lobe.grazing;
-    moments *= std::min(1.0, (1.0 - static_cast<double>(probe.albedo[c])) / moments.x);
     const glm::dvec3 m = moments.y * across + moments.z * n, l1 = band1 * glm::dvec3(light.y, light.z, light.w);
     result[c] = std::max(0.0, kBasis0 * moments.x * 2.0 / 3.0 * light.x - kBasis1 * glm::dot(l1, m));
   }
@@ -167,18 +166,17 @@ class GlossyTest : public test::SharedProgramsTest {
     for (const glm::vec4& radiance : out.read<glm::vec4>()) result.emplace_back(glm::vec3(radiance));
     return result;
   }
-  /// Probes in the middle of the volume: every shininess at several angles.
-  static std::vector<GlossyProbe> probes(const SmallVolume& volume, const glm::vec3& albedo,
-                                         const glm::vec3& specular) {
+  /// Probes in the middle of the volume: every alpha at several angles.
+  static std::vector<GlossyProbe> probes(const SmallVolume& volume, const glm::vec3& specular) {
     std::vector<GlossyProbe> result;
     const glm::vec3 n = glm::normalize(glm::vec3(0.3f, 1.0f, -0.2f));
     const glm::vec3 t = glm::normalize(glm::cross(n, glm::vec3(0, 0, 1)));
     const auto middle = static_cast<float>(0.5 * volume.cells * volume.cellSize);
-    for (const float shininess : {1.0f, 6.0f, 30.0f, 500.0f})
+    for (const float alpha : {0.8f, 0.5f, 0.25f, 0.06f})
       for (const float cosine : {0.1f, 0.35f, 0.7f, 0.98f})
         result.push_back({glm::vec4(glm::vec3(middle - 0.1f, middle, middle + 0.2f), 1), glm::vec4(n, 0),
-                          glm::vec4(cosine * n + std::sqrt(1.0f - cosine * cosine) * t, 0), glm::vec4(albedo, 0),
-                          glm::vec4(specular, shininess)});
+                          glm::vec4(cosine * n + std::sqrt(1.0f - cosine * cosine) * t, 0),
+                          glm::vec4(specular, alpha)});
     return result;
   }
 };
@@ -213,11 +211,11 @@ TEST_F(GlossyTest, AConstantRadianceIsReflectedByTheReflectance) {
                             glm::vec4(static_cast<float>(radiance[c] / (kBasis0 * 2.0 / 3.0 * 2.0)), 0, 0, 0));
   for (const int steps : {1, 4}) {
     volume.steps = steps;
-    const std::vector<GlossyProbe> places = probes(volume, glm::vec3(0.0f), {0.9f, 0.5f, 0.04f});
+    const std::vector<GlossyProbe> places = probes(volume, {0.9f, 0.5f, 0.04f});
     const std::vector<glm::dvec3> found = reflected(volume, places);
     for (std::size_t i = 0; i < places.size(); ++i) {
       const double cosine = static_cast<double>(glm::dot(glm::vec3(places[i].normal), glm::vec3(places[i].toCamera)));
-      const double alpha = std::sqrt(2.0 / (static_cast<double>(places[i].specular.w) + 2.0));
+      const double alpha = static_cast<double>(places[i].specular.w);
       const GlossyLobe lobe = lobeOverVisibleFacets(cosine, alpha);
       for (int c = 0; c < 3; ++c) {
         const double f0 = places[i].specular[c], rho = f0 * lobe.facets.x + (1.0 - f0) * lobe.grazing.x;
@@ -245,7 +243,7 @@ TEST_F(GlossyTest, TheShaderAgreesWithItsReference) {
         if (unit(random) < 0.5f)
           sh = 0.4 * reference::lobe(glm::normalize(glm::dvec3(sign(random), sign(random), sign(random))));
     }
-    const std::vector<GlossyProbe> places = probes(volume, {0.2f, 0.7f, 0.97f}, {0.9f, 0.3f, 0.04f});
+    const std::vector<GlossyProbe> places = probes(volume, {0.9f, 0.3f, 0.04f});
     const std::vector<glm::dvec3> found = reflected(volume, places);
     double largest = 0.0, brightest = 0.0;
     for (std::size_t i = 0; i < places.size(); ++i) {
@@ -272,8 +270,7 @@ TEST_F(GlossyTest, AMarchEndsAtTheFirstWall) {
     for (int z = 0; z < 16; ++z)
       for (int y = 0; y < 16; ++y)
         for (int x = 0; x < 16; ++x) channel.push_back({y < 10 ? static_cast<float>(1.5 / kBasis0) : 0.0f, 0, 0, 0});
-  const GlossyProbe up{
-      {8.0f, 4.2f, 8.0f, 1}, {0, 1, 0, 0}, {0.1f, 0.995f, 0.0f, 0}, glm::vec4(0.0f), {1.0f, 1.0f, 1.0f, 1e5f}};
+  const GlossyProbe up{{8.0f, 4.2f, 8.0f, 1}, {0, 1, 0, 0}, {0.1f, 0.995f, 0.0f, 0}, {1.0f, 1.0f, 1.0f, 0.0045f}};
   const auto seen = [&](bool wall) {
     volume.geometry.emplace(reference::geometryGrid(reference::GridSpec{glm::ivec3(16), glm::dvec3(0.0), 1.0}));
     for (int z = 0; z <= 16 && wall; ++z)
@@ -291,10 +288,10 @@ TEST_F(GlossyTest, OneLobeIsReflectedFromTheSideItComesFrom) {
   // c = (1, 0, -b, 0): radiance Y00 2/3 - Y1 0.9146 b w.y of light that travels along w.
   const double b = 0.4;
   for (auto& channel : volume.texels) channel.assign(64, glm::vec4(1.0f, 0.0f, static_cast<float>(-b), 0.0f));
-  const glm::vec4 middle(1.0f, 1.0f, 1.0f, 1.0f), white(1.0f, 1.0f, 1.0f, 1e6f), black(0.0f);
+  const glm::vec4 middle(1.0f, 1.0f, 1.0f, 1.0f), white(1.0f, 1.0f, 1.0f, 0.0014f);
   const glm::vec3 up(0.6f, 0.8f, 0.0f);
-  const std::vector<GlossyProbe> places{{middle, {0, 1, 0, 0}, glm::vec4(up, 0), black, white},
-                                        {middle, {0, -1, 0, 0}, glm::vec4(-up, 0), black, white}};
+  const std::vector<GlossyProbe> places{{middle, {0, 1, 0, 0}, glm::vec4(up, 0), white},
+                                        {middle, {0, -1, 0, 0}, glm::vec4(-up, 0), white}};
   const std::vector<glm::dvec3> found = reflected(volume, places);
   const double band0 = kBasis0 * 2.0 / 3.0, band1 = kBasis1 * 0.91461886 * b;
   EXPECT_NEAR(found[0].x, 3.0 * (band0 + 0.8 * band1), 5e-3);
@@ -312,23 +309,21 @@ TEST_F(GlossyTest, AlongTheNormalItIsContinuous) {
     places.push_back({glm::vec4(3, 3, 3, 1),
                       {0, 1, 0, 0},
                       glm::vec4(glm::normalize(glm::vec3(tilt, 1, 0)), 0),
-                      glm::vec4(0.0f),
-                      {0.9f, 0.9f, 0.9f, 30.0f}});
+                      {0.9f, 0.9f, 0.9f, 0.25f}});
   const std::vector<glm::dvec3> found = reflected(volume, places);
   EXPECT_GT(found[0].x, 0.0);
   EXPECT_NEAR(found[0].x / found[1].x, 1.0, 0.05);
 }
 
-// Together with the diffuse reflection never more than what arrives.
+// Never more than what arrives.
 TEST_F(GlossyTest, NoMoreIsReflectedThanArrives) {
   SmallVolume volume;
   volume.irradiance = 1.0;
   for (auto& channel : volume.texels) channel.assign(64, glm::vec4(static_cast<float>(1.5 / kBasis0), 0, 0, 0));
   volume.steps = 1;
-  const glm::vec3 albedo(0.0f, 0.6f, 1.0f);
   for (const float specular : {0.04f, 0.5f, 1.0f})
-    for (const glm::dvec3& radiance : reflected(volume, probes(volume, albedo, glm::vec3(specular))))
-      for (int c = 0; c < 3; ++c) EXPECT_LE(radiance[c] + static_cast<double>(albedo[c]), 1.0 + 1e-5);
+    for (const glm::dvec3& radiance : reflected(volume, probes(volume, glm::vec3(specular))))
+      for (int c = 0; c < 3; ++c) EXPECT_LE(radiance[c], 1.0 + 1e-5);
 }
 
 // ------------------------------------------------------------------------------------------------------------ pictures
@@ -342,7 +337,6 @@ Scene boxWithWall(double alpha, bool glossy = true) {
     wall.bsdf = Bsdf::conductor;
     wall.specular = glm::vec3(0.9f);
     wall.roughness = static_cast<float>(alpha);
-    wall.shininess = static_cast<float>(2.0 / (alpha * alpha) - 2.0);
   }
   scene.meshes[1].material = static_cast<int>(scene.materials.size()) - 1;
   return scene;
@@ -438,13 +432,13 @@ TEST_F(GlossyTest, NothingOfItIsThereUnlessAskedForAndNeeded) {
              unneeded = made(boxWithWall(0.3, false), true), plain = made(boxWithWall(0.3, false), false);
   EXPECT_FALSE(on.leftOut);
   EXPECT_TRUE(on.has("lpvLobes"));
-  EXPECT_TRUE(on.has("materialShininess"));
+  EXPECT_TRUE(on.has("materialAlpha"));
   EXPECT_EQ(on.gpuBytes, off.gpuBytes + 2 * LPV_LOBES_ANGLES * LPV_LOBES_ALPHAS * sizeof(glm::vec4));
   for (const Made* without : {&off, &unneeded}) {
     EXPECT_TRUE(without->leftOut);
     EXPECT_FALSE(without->has("lpvLobes"));
-    EXPECT_FALSE(without->has("materialShininess"));
   }
+  EXPECT_FALSE(unneeded.has("materialAlpha"));
   EXPECT_EQ(unneeded.gpuBytes, plain.gpuBytes);
   EXPECT_EQ(unneeded.picture.pixels, plain.picture.pixels);
   EXPECT_NE(on.picture.pixels, off.picture.pixels);

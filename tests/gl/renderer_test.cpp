@@ -187,7 +187,7 @@ TEST_F(RendererGl, AllIsDirectPlusIndirect) {
   Scene scene = openBox();
   scene.background = {0.1f, 0.2f, 0.3f};
   scene.materials[0].specular = glm::vec3(0.3f);
-  scene.materials[0].shininess = 20.0f;
+  scene.materials[0].roughness = 0.3f;
   scene.materials[1].emission = {0.05f, 0.0f, 0.1f};
   const Image all = render(scene, openBoxCamera(), settings(Component::all));
   const Image direct = render(scene, openBoxCamera(), settings(Component::direct));
@@ -256,7 +256,7 @@ TEST_F(RendererGl, WhatASceneLacksIsNotCompiled) {
   };
   const std::string plain = resourcesOf(openBox());
   for (const char* unwanted :
-       {"diffuseTexture", "maskTexture", "materialSpecular", "materialShininess", "materialEmission", "masked"})
+       {"diffuseTexture", "maskTexture", "materialSpecular", "materialAlpha", "materialEmission", "masked"})
     EXPECT_EQ(plain.find(unwanted), std::string::npos) << unwanted << " in\n" << plain;
   EXPECT_NE(plain.find("surface opaque:materialDiffuse"), std::string::npos) << plain;
 
@@ -273,7 +273,7 @@ TEST_F(RendererGl, WhatASceneLacksIsNotCompiled) {
   for (const int m : {material, shiny, glows}) builder.plate({0, m, 0}, {0, 0, 8}, {8, 0, 0}, m);
   const std::string rich = resourcesOf(builder.scene());
   for (const char* wanted :
-       {"diffuseTexture", "maskTexture", "materialSpecular", "materialShininess", "materialEmission", "masked"})
+       {"diffuseTexture", "maskTexture", "materialSpecular", "materialAlpha", "materialEmission", "masked"})
     EXPECT_NE(rich.find(wanted), std::string::npos) << wanted << " in\n" << rich;
 }
 

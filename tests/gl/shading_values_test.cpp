@@ -2,7 +2,8 @@
 // filters, the display curves.
 #include "base/angles.hpp"
 #include "radiosity/radiosity_view.hpp"
-#include "support/gl_fixture.hpp"
+#include "support/coat_reference.hpp"
+#include "support/path_scenes.hpp"
 #include "support/pixel_rays.hpp"
 #include "support/radiosity_scenes.hpp"
 #include "support/small_scenes.hpp"
@@ -28,7 +29,7 @@ using test::SceneBuilder;
 
 constexpr glm::ivec2 kPictureSize{48, 32};
 
-class ShadingValues : public test::SharedProgramsTest {
+class ShadingValues : public test::PathTest {
  protected:
   static RenderSettings settings(std::string_view technique = "direct") {
     RenderSettings s;
@@ -46,27 +47,22 @@ class ShadingValues : public test::SharedProgramsTest {
 
 // ---------------------------------------------------------------------------------------------------------- highlights
 
-/// A floor with a highlight, its front up or down; no light.
-SceneBuilder shinyFloor(float shininess, bool frontUp = true) {
+constexpr glm::dvec3 kShinyBase{0.4, 0.2, 0.1}, kShinySpecular{0.1, 0.3, 0.2};
+
+/// A coated floor, its front up or down; no light.
+SceneBuilder shinyFloor(float alpha, bool frontUp = true) {
   SceneBuilder builder;
-  const int shiny = builder.material({0.4f, 0.2f, 0.1f});
-  builder.materialAt(shiny).specular = {0.1f, 0.3f, 0.2f};
-  builder.materialAt(shiny).shininess = shininess;
+  const int shiny = builder.material(glm::vec3(kShinyBase));
+  builder.materialAt(shiny).specular = glm::vec3(kShinySpecular);
+  builder.materialAt(shiny).roughness = alpha;
   const glm::dvec3 u{0, 0, 40}, v{40, 0, 0};
   builder.plate({0, 0, 0}, frontUp ? u : v, frontUp ? v : u, shiny);
   builder.scene().sun.reset();
   return builder;
 }
 
-/// Lambert and normalised Blinn-Phong [AkenineMoller2018, section 9.8] on that floor.
-glm::dvec3 reflected(double shininess, const glm::dvec3& toCamera, const glm::dvec3& toLight) {
-  const double cosine = std::max(glm::normalize(toCamera + toLight).y, 0.0);
-  return glm::dvec3(0.4, 0.2, 0.1) / kPi +
-         glm::dvec3(0.1, 0.3, 0.2) * ((shininess + 8.0) / (8.0 * kPi) * std::pow(cosine, shininess));
-}
-
-void expectHighlight(const Image& image, const Camera& camera, double shininess, const char* name,
-                     const std::function<glm::dvec3(const glm::dvec3&, glm::dvec3&)>& irradiance) {
+void expectHighlight(const Image& image, const Camera& camera, const reference::CoatedSurface& surface,
+                     const char* name, const std::function<glm::dvec3(const glm::dvec3&, glm::dvec3&)>& irradiance) {
   double brightest = 0.0, darkest = 1e300;
   for (int y = 0; y < kPictureSize.y; ++y)
     for (int x = 0; x < kPictureSize.x; ++x) {
@@ -74,7 +70,8 @@ void expectHighlight(const Image& image, const Camera& camera, double shininess,
       const auto radiance = [&](const glm::dvec3& p) {
         glm::dvec3 toLight;
         e = irradiance(p, toLight);
-        return reflected(shininess, glm::normalize(camera.position - p), toLight) * e;
+        const glm::dvec3 o = glm::normalize(camera.position - p);  // the floor's normal is y
+        return surface.bsdf({o.z, o.x, o.y}, {toLight.z, toLight.x, toLight.y}) * e;
       };
       // Where the driver moves corners to 1/256 of a pixel, the surface is seen as far beside.
       const auto seen = [&](int i, int j) { return onPlane(camera, pixelRay(camera, i, j, kPictureSize), 0.0); };
@@ -91,44 +88,43 @@ void expectHighlight(const Image& image, const Camera& camera, double shininess,
   EXPECT_GT(brightest, 1.5 * darkest) << name << ": the highlight is in the picture";
 }
 
-TEST_F(ShadingValues, HighlightsAreNormalisedBlinnPhongForEveryKindOfLight) {
+// Forward shading and the path tracer.
+TEST_F(ShadingValues, CoatsReflectEveryKindOfLight) {
   const Camera camera = lookingAt({0, 3, 5}, {0, 0, 0}, 0.6);
-  for (const float shininess : {5.0f, 60.0f})
+  const glm::dvec3 lamp{0.2, 3.0, -5.0}, axis = glm::normalize(glm::dvec3(0.0, 0.0, -0.5) - lamp);
+  for (const float alpha : {0.55f, 0.18f}) {
+    const reference::CoatedSurface surface(kShinyBase, kShinySpecular, static_cast<double>(alpha));
     for (const bool frontUp : {true, false}) {
-      const glm::dvec3 lamp{0.2, 3.0, -5.0}, aim{0.0, 0.0, -0.5};
-      {
-        SceneBuilder builder = shinyFloor(shininess, frontUp);
-        builder.sun({0.02, -3.0, 5.0}, {3.0f, 5.0f, 7.0f});
-        const glm::dvec3 toSun = -builder.scene().sun->direction;
-        expectHighlight(render(builder.scene(), camera), camera, shininess, "sun",
-                        [&](const glm::dvec3&, glm::dvec3& to) {
-                          to = toSun;
-                          return glm::dvec3(3.0, 5.0, 7.0) * to.y;
-                        });
-      }
+      const auto expect = [&](const Scene& scene, const char* name, const auto& irradiance) {
+        expectHighlight(render(scene, camera), camera, surface, name, irradiance);
+        PathTracer::Settings path;
+        path.size = kPictureSize;
+        path.pixelCentres = true;
+        path.transport = Transport::direct;
+        expectHighlight(tracer(scene, camera, path, 1).mean(), camera, surface, name, irradiance);
+      };
       const auto falling = [&](const glm::dvec3& p, glm::dvec3& to) {
         const double d = glm::length(lamp - p);
         to = (lamp - p) / d;
         return glm::dvec3(30.0, 20.0, 10.0) * (to.y / (d * d));
       };
-      {
-        SceneBuilder builder = shinyFloor(shininess, frontUp);
-        builder.scene().points.push_back({lamp, {30.0f, 20.0f, 10.0f}});
-        expectHighlight(render(builder.scene(), camera), camera, shininess, "omnidirectional", falling);
-      }
-      {
-        SceneBuilder builder = shinyFloor(shininess, frontUp);
-        const glm::dvec3 axis = glm::normalize(aim - lamp);
-        builder.scene().spots.push_back({lamp, axis, {30.0f, 20.0f, 10.0f}, 0.2, 1.2});
-        expectHighlight(
-            render(builder.scene(), camera), camera, shininess, "spot", [&](const glm::dvec3& p, glm::dvec3& to) {
-              const glm::dvec3 e = falling(p, to);
-              const double t =
-                  std::clamp((glm::dot(-to, axis) - std::cos(1.2)) / (std::cos(0.2) - std::cos(1.2)), 0.0, 1.0);
-              return e * (t * t * (3.0 - 2.0 * t));
-            });
-      }
+      SceneBuilder sun = shinyFloor(alpha, frontUp), point = sun, spot = sun;
+      sun.sun({0.02, -3.0, 5.0}, {3.0f, 5.0f, 7.0f});
+      const glm::dvec3 toSun = -sun.scene().sun->direction;
+      expect(sun.scene(), "sun", [&](const glm::dvec3&, glm::dvec3& to) {
+        to = toSun;
+        return glm::dvec3(3.0, 5.0, 7.0) * to.y;
+      });
+      point.scene().points.push_back({lamp, {30.0f, 20.0f, 10.0f}});
+      expect(point.scene(), "omnidirectional", falling);
+      spot.scene().spots.push_back({lamp, axis, {30.0f, 20.0f, 10.0f}, 0.2, 1.2});
+      expect(spot.scene(), "spot", [&](const glm::dvec3& p, glm::dvec3& to) {
+        const glm::dvec3 e = falling(p, to);
+        const double t = std::clamp((glm::dot(-to, axis) - std::cos(1.2)) / (std::cos(0.2) - std::cos(1.2)), 0.0, 1.0);
+        return e * (t * t * (3.0 - 2.0 * t));
+      });
     }
+  }
 }
 
 // ------------------------------------------------------------------------------------------------------ shadow filters

@@ -2,11 +2,13 @@
 // against what the texels say.
 #include "lpv/settings.hpp"
 #include "radiosity/radiosity_view.hpp"
+#include "support/coat_reference.hpp"
 #include "support/path_scenes.hpp"
 
 #include "base/angles.hpp"
 #include "base/image.hpp"
 #include "render/renderer.hpp"
+#include "scene/coat.hpp"
 #include "scene/texture_mean.hpp"
 
 #include <gtest/gtest.h>
@@ -147,22 +149,27 @@ TEST_F(SurfaceMaps, NormalsLieAlongTheTextureWhicheverWayItLies) {
       }
 }
 
+/// A direction in a frame whose z is the normal.
+glm::dvec3 aboutNormal(const glm::dvec3& normal, const glm::dvec3& direction) {
+  const glm::dvec3 x = glm::normalize(glm::cross(normal, glm::dvec3(0.3, -0.4, 0.8))), y = glm::cross(normal, x);
+  return {glm::dot(direction, x), glm::dot(direction, y), glm::dot(direction, normal)};
+}
+
 TEST_F(SurfaceMaps, LampsAndHighlightsTakeTheMappedNormal) {
   Material material;
   material.diffuse = glm::vec3(0.5f);
   material.specular = {0.3f, 0.2f, 0.1f};
-  material.shininess = 20.0f;
+  material.roughness = 0.3f;
   SceneBuilder builder = floorOf(material);
   builder.materialAt(0).normalTexture = builder.texture(1, 1, {200, 128, 220, 255});
   const glm::dvec3 normal =
       glm::normalize(glm::dvec3(2.0 * 200 / 255.0 - 1.0, 2.0 * 220 / 255.0 - 1.0, -(2.0 * 128 / 255.0 - 1.0)));
+  const reference::CoatedSurface surface(glm::dvec3(0.5), {0.3, 0.2, 0.1}, 0.3);
   const Camera camera = lookingAt({0, 4, 0}, {0, 0, 0}, 0.1);
   const auto expect = [&](const char* name, const glm::dvec3& toLight, double irradianceAcross) {
     const Image image = drawn(builder.scene(), camera);
-    const double cosine = std::max(glm::dot(normal, glm::normalize(toLight + glm::dvec3(0, 1, 0))), 0.0);
-    const glm::dvec3 reflection =
-        glm::dvec3(0.5 / kPi) + glm::dvec3(0.3, 0.2, 0.1) * (28.0 / (8.0 * kPi) * std::pow(cosine, 20.0));
-    const glm::dvec3 expected = reflection * (irradianceAcross * glm::dot(normal, toLight));
+    const glm::dvec3 expected = surface.bsdf(aboutNormal(normal, {0, 1, 0}), aboutNormal(normal, toLight)) *
+                                (irradianceAcross * glm::dot(normal, toLight));
     for (int c = 0; c < 3; ++c)
       EXPECT_NEAR(image.at(8, 8)[c], expected[c], 0.02 * expected[c]) << name;  // the pixel is not the picture's middle
   };
@@ -218,74 +225,62 @@ TEST_F(SurfaceMaps, MetalsByTexelsAreShadedByTexels) {
       const Image image = drawn(builder.scene(), lookingAt(place + glm::dvec3(0, 4, 0), place, 0.02));
       const double metallic = static_cast<double>(metallicFactor) * (right ? 1.0 : 0.2),
                    roughness = static_cast<double>(roughnessFactor) * (right ? 0.4 : 0.6);
-      const double exponent = std::max(2.0 / std::pow(roughness, 4.0) - 2.0, 1.0);
-      const double lobe =
-          (exponent + 8.0) / (8.0 * kPi) * std::pow(glm::normalize(toSun + glm::dvec3(0, 1, 0)).y, exponent);
-      for (int c = 0; c < 3; ++c) {
-        const double expected =
-            (kBase[c] * (1.0 - metallic) / kPi + (0.04 * (1.0 - metallic) + kBase[c] * metallic) * lobe) * 2.0 *
-            toSun.y;
-        EXPECT_NEAR(image.at(8, 8)[c], expected, 0.01 * expected) << metallicFactor << " " << right << " " << c;
-      }
+      const reference::CoatedSurface surface(kBase * (1.0 - metallic), glm::mix(glm::dvec3(0.04), kBase, metallic),
+                                             roughness * roughness);
+      const glm::dvec3 expected = surface.bsdf({0, 0, 1}, aboutNormal({0, 1, 0}, toSun)) * (2.0 * toSun.y);
+      for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(image.at(8, 8)[c], expected[c], 0.01 * expected[c]) << metallicFactor << " " << right << " " << c;
     }
   }
 }
 
-// In an environment of radiance 1 everywhere a Lambert surface shows its albedo, a smooth metal Schlick's reflectance
-// [Schlick1994].
-TEST_F(SurfaceMaps, ThePathTracerTakesTexelsForMetalFromAHalfOn) {
-  SceneBuilder builder = halfMetal(1.0f, 0.0f);
-  builder.scene().sun.reset();
-  builder.scene().environment = Environment{};
-  builder.scene().environment->radiance = glm::vec3(1.0f);
-  const double cosine = std::sqrt(0.5);
+// The path tracer reads the same texels: a coat over what is left of the base.
+TEST_F(SurfaceMaps, MetalsByTexelsAreTracedByTexels) {
+  SceneBuilder builder = halfMetal(1.0f, 1.0f);
+  const glm::dvec3 toSun = glm::normalize(glm::dvec3(0.3, 1.0, -1.0));
+  builder.sun(-toSun, glm::vec3(2.0f));
   for (const bool right : {false, true}) {
-    const glm::dvec3 place(right ? 2.0 : -2.0, 0.0, 0.0);
-    const Image image = tracer(builder.scene(), lookingAt(place + glm::dvec3(0, 3, 3), place, 0.02), 4, 4).mean();
-    for (int c = 0; c < 3; ++c) {
-      const double expected = right ? kBase[c] + (1.0 - kBase[c]) * std::pow(1.0 - cosine, 5.0) : kBase[c] * 0.8;
-      EXPECT_NEAR(image.at(1, 1)[c], expected, kDecoding * expected) << right << " " << c;
-    }
+    const glm::dvec3 place(right ? 2.0 : -2.0, 0.0, 0.0), eye = place + glm::dvec3(0, 3, 3);
+    const double metallic = right ? 1.0 : 0.2, roughness = right ? 0.4 : 0.6;
+    const reference::CoatedSurface surface(kBase * (1.0 - metallic), glm::mix(glm::dvec3(0.04), kBase, metallic),
+                                           roughness * roughness);
+    const Image image = traced(builder.scene(), lookingAt(eye, place, 0.01));
+    const glm::dvec3 up(0, 1, 0),
+        expected = surface.bsdf(aboutNormal(up, glm::normalize(eye - place)), aboutNormal(up, toSun)) * (2.0 * toSun.y);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(image.at(8, 8)[c], expected[c], kDecoding * expected[c]) << right << c;
   }
-  // The sun's highlight beside its middle is that of a metal of the same roughness without a picture: alpha (0.4)^2.
-  SceneBuilder sunlit = halfMetal(1.0f, 1.0f);
-  Material plain;
-  plain.bsdf = Bsdf::conductor;
-  plain.specular = glm::vec3(kBase);
-  plain.roughness = 0.16f;
-  SceneBuilder constant = floorOf(plain);
-  for (SceneBuilder* each : {&sunlit, &constant}) each->sun({-0.3, -1.0, 1.0}, glm::vec3(2.0f));
-  const Camera camera = lookingAt({2, 3, 3}, {2, 0, 0}, 0.02);
-  const double expected = traced(constant.scene(), camera).at(8, 8).x;
-  EXPECT_GT(expected, 0.1);
-  EXPECT_NEAR(traced(sunlit.scene(), camera).at(8, 8).x, expected, kDecoding * expected);
-  // As forward shading has it: metals reflect nothing diffusely.
-  PathTracer::Settings diffuse = sized(4);
-  diffuse.diffuseOnly = true;
-  EXPECT_NEAR(tracer(builder.scene(), lookingAt({2, 3, 3}, {2, 0, 0}, 0.02), diffuse, 4).mean().at(1, 1).x, 0.0, 1e-6);
 }
 
-// What surfaces throw on each other is diffuse: of a picture that says metal there is none.
-TEST_F(SurfaceMaps, MetalsByTexelsThrowNoDiffuseLight) {
-  for (const float metallic : {0.0f, 1.0f}) {
-    SceneBuilder builder;
-    const int lit = builder.material(glm::vec3(0.5f)), grey = builder.material(glm::vec3(0.5f));
-    builder.materialAt(lit).metalMap =
-        MetalMap{glm::vec3(0.8f), metallic, 1.0f, builder.texture(1, 1, {0, 255, 255, 255})};
-    builder.plate({0, 0, 0}, {0, 0, 4}, {4, 0, 0}, lit);
-    builder.plate({-2, 2, 0}, {0, 4, 0}, {0, 0, 4}, grey);
-    builder.sun({0.0, -1.0, 0.0}, glm::vec3(5.0f));  // along the grey plate
-    const Camera camera = lookingAt({3, 1.5, 0}, {-2, 1.0, 0}, 0.3);
-    for (const std::string_view technique : {"lpv", "rsm"}) {
-      const double light = meanOf(drawn(builder.scene(), camera, technique, Component::indirect)).x;
-      if (metallic > 0.0f) EXPECT_EQ(light, 0.0) << technique;
-      else EXPECT_GT(light, 0.01) << technique;
+// What surfaces throw on each other is all that they reflect, as if matte.
+TEST_F(SurfaceMaps, MetalsByTexelsThrowWhatTheyReflect) {
+  Material plain[2];
+  plain[0].diffuse = glm::vec3(0.8f);
+  plain[0].specular = glm::vec3(0.04f);
+  plain[1].diffuse = glm::vec3(0.0f);
+  plain[1].specular = glm::vec3(0.8f);
+  for (const std::string_view technique : {"lpv", "rsm"}) {
+    double light[2];
+    for (int metallic = 0; metallic < 2; ++metallic) {
+      SceneBuilder builder;
+      const int lit = builder.material(glm::vec3(0.5f)), grey = builder.material(glm::vec3(0.5f));
+      builder.materialAt(lit).metalMap =
+          MetalMap{glm::vec3(0.8f), static_cast<float>(metallic), 1.0f, builder.texture(1, 1, {0, 255, 255, 255})};
+      builder.plate({0, 0, 0}, {0, 0, 4}, {4, 0, 0}, lit);
+      builder.plate({-2, 2, 0}, {0, 4, 0}, {0, 0, 4}, grey);
+      builder.sun({0.0, -1.0, 0.0}, glm::vec3(5.0f));  // along the grey plate
+      const Camera camera = lookingAt({3, 1.5, 0}, {-2, 1.0, 0}, 0.3);
+      light[metallic] = meanOf(drawn(builder.scene(), camera, technique, Component::indirect)).x;
+      plain[metallic].roughness = 1.0f;
     }
+    EXPECT_GT(light[0], 0.01) << technique;
+    const auto whole = [&](int i) { return static_cast<double>(wholeReflectance(plain[i]).x); };
+    EXPECT_NEAR(light[1] / light[0], whole(1) / whole(0), 2e-3) << technique;
   }
 }
 
 TEST_F(SurfaceMaps, PatchesReflectTheMeanOfTheirTexels) {
-  const Scene scene = halfMetal(1.0f, 1.0f).scene();
+  Scene scene = halfMetal(1.0f, -1.0f).scene();
+  scene.materials[0].specular = glm::vec3(0.0f);
   const std::array<glm::vec2, 3> all{{{0.0f, 0.0f}, {1.0f, 0.0f}, {0.0f, 1.0f}}},
       left{{{0.1f, 0.0f}, {0.4f, 0.0f}, {0.1f, 1.0f}}};
   EXPECT_NEAR(meanAlbedo(scene, scene.materials[0], left).x, kBase.x * 0.8, 1e-6);

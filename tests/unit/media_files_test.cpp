@@ -405,19 +405,6 @@ struct OurFolder : OriginalFolder {
   }
 };
 
-TEST(SceneMedia, AConductorsHighlightIsAsWideAsItsRoughness) {
-  // The model's file gives no exponent (1). Forward shading has no other lobe than Blinn-Phong's: 2 / alpha^2 - 2.
-  const OurFolder folder;
-  const auto wall = [&](const std::string& keys) {
-    return materialNamed(folder.load(R"("materials": {"wall": {)" + keys + "}}"), "wall").shininess;
-  };
-  EXPECT_NEAR(wall(R"("bsdf": "conductor", "roughness": 0.1)"), 198.0f, 1e-3f);
-  EXPECT_NEAR(wall(R"("bsdf": "conductor", "roughness": 0.5)"), 6.0f, 1e-5f);
-  EXPECT_EQ(wall(R"("bsdf": "conductor", "roughness": 1)"), 1.0f);
-  EXPECT_GT(wall(R"("bsdf": "conductor")"), 1e6f);  // smooth
-  EXPECT_EQ(wall(R"("roughness": 0.1)"), 1.0f);  // Lambert has no use for it
-}
-
 TEST(SceneMedia, EveryKeyIsRead) {
   const OurFolder folder;
   folder.write("fog.raw", bytesOf({0.5f, 1.0f}));

@@ -172,9 +172,9 @@ TEST(SceneLoader, MaterialsOfMtlAreRead) {
   EXPECT_TRUE(loggedWarnings().empty());
   const Material& m = scene.materials[0];
   EXPECT_EQ(m.name, "shiny");
-  EXPECT_EQ(m.diffuse, glm::vec3(0.1f, 0.2f, 0.3f));
+  EXPECT_LT(glm::distance(m.diffuse, glm::vec3(0.1f / 0.6f, 0.2f / 0.5f, 0.3f / 0.4f)), 1e-6f);  // under the coat
   EXPECT_EQ(m.specular, glm::vec3(0.4f, 0.5f, 0.6f));
-  EXPECT_EQ(m.shininess, 50.0f);
+  EXPECT_FLOAT_EQ(m.roughness, std::sqrt(2.0f / 52.0f));
   EXPECT_EQ(m.emission, glm::vec3(7.0f, 8.0f, 9.0f));
   EXPECT_EQ(m.opacity, 1.0f);
   EXPECT_EQ(m.diffuseTexture, -1);
@@ -198,7 +198,7 @@ TEST(SceneLoader, ReflectancesAreHeldWithin0And1) {
   const Scene scene = loadObj(folder, "usemtl m\n" + kTriangle, "newmtl m\nKd 2 -1 0.5\nKe -1 0 0\nNs 0\n");
   EXPECT_EQ(scene.materials[0].diffuse, glm::vec3(1.0f, 0.0f, 0.5f));
   EXPECT_EQ(scene.materials[0].emission, glm::vec3(0.0f));
-  EXPECT_EQ(scene.materials[0].shininess, 1.0f);
+  EXPECT_EQ(scene.materials[0].roughness, 1.0f);
 }
 
 TEST(SceneLoader, TexturesAreFoundBehindBackSlashesAndShared) {
@@ -416,7 +416,7 @@ TEST(SceneLoader, MetallicRoughnessBecomesDiffuseAndSpecular) {
           .materials[0];
   EXPECT_LT(glm::distance(plastic.diffuse, glm::vec3(0.2f, 0.4f, 0.6f)), 1e-6f);
   EXPECT_LT(glm::distance(plastic.specular, glm::vec3(0.04f)), 1e-6f);
-  EXPECT_NEAR(plastic.shininess, 2.0f / std::pow(0.5f, 4.0f) - 2.0f, 1e-3f);
+  EXPECT_FLOAT_EQ(plastic.roughness, 0.25f);
   const Material metal =
       loadGltf(folder, node, R"({"pbrMetallicRoughness":{"baseColorFactor":[0.2,0.4,0.6,1],"metallicFactor":1}})")
           .materials[0];
@@ -437,7 +437,7 @@ TEST(SceneLoader, GltfTexturesCountByTheirMeanWhereTheyAreNotKept) {
                R"(,"textures":[{"source":0}],"images":[{"uri":"mr.png"}])")
           .materials[0];
   EXPECT_NEAR(m.diffuse.x, 0.9f, 1e-5f);
-  EXPECT_NEAR(m.shininess, 1.0f, 1e-5f);
+  EXPECT_NEAR(m.roughness, 1.0f, 1e-5f);
 }
 
 TEST(SceneLoader, GltfAlphaModesDecideOverMasks) {

@@ -63,7 +63,7 @@ TEST(SponzaTest, MaterialsAreReadRight) {
   }
   EXPECT_EQ(materials["leaf"].diffuse, glm::vec3(0.588f));
   EXPECT_EQ(materials["bricks"].specular, glm::vec3(0.01f));
-  EXPECT_EQ(materials["bricks"].shininess, 10.0f);
+  EXPECT_FLOAT_EQ(materials["bricks"].roughness, std::sqrt(2.0f / 12.0f));
   const SceneFeatures features = analyse(scene);
   EXPECT_TRUE(features.diffuseTextures && features.alphaMasks && features.specular && features.directionalLight &&
               features.indirect);

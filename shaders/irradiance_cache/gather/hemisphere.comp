@@ -133,7 +133,7 @@ vec3 lookAround(CacheRecord record, uint index, uint ray) {
 #if BOUNCED
   uint point = pointNear(at.position, at.normal, vec4(unitFloat(randomWords(numbers, 1u, kPurposePick).xy),
                                                       unitFloat(randomWords(numbers, 1u, kPurposeChoice).xy)));
-  vec3 albedo = min(albedoAt(at), vec3(1.0));
+  vec3 albedo = min(wholeAlbedoAt(at), vec3(1.0));
 #if LINKS
   // Rounded down: no surface reflects more than it does.
   uvec3 steps = uvec3(clampedInt(floor(albedo * 65535.0), ivec3(0), ivec3(65535)));
