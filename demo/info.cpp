@@ -84,14 +84,16 @@ int runInfo(const InfoOptions& options) {
     json["extensions"][name] = there;
   }
   if (scene) {
-    const glm::dvec3 low = scene->bounds.min, high = scene->bounds.max;
+    const glm::dvec3 low = scene->bounds.min + scene->origin, high = scene->bounds.max + scene->origin;
+    const int digits = scene->origin == glm::dvec3(0.0) ? 6 : 12;
     fmt::print("\nscene {}\n  {:<32}{}\n  {:<32}{}\n  {:<32}{}\n  {:<32}{}\n  {:<32}{}\n", scene->file.string(),
                "triangles", scene->triangleCount(), "vertices", scene->vertices.size(), "meshes", scene->meshes.size(),
                "materials", scene->materials.size(), "textures", scene->textures.size());
     fmt::print("  {:<32}{} ({} of zero area)\n", "left out, not finite", scene->droppedTriangles,
                scene->degenerateTriangles);
-    fmt::print("  {:<32}({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g}), {:.6g} m a unit\n", "bounds", low.x,
-               low.y, low.z, high.x, high.y, high.z, scene->metresPerUnit);
+    fmt::print("  {:<32}({:.{}g}, {:.{}g}, {:.{}g}) to ({:.{}g}, {:.{}g}, {:.{}g}), {:.6g} m a unit\n", "bounds", low.x,
+               digits, low.y, digits, low.z, digits, high.x, digits, high.y, digits, high.z, digits,
+               scene->metresPerUnit);
     for (const Camera& camera : scene->cameras)
       fmt::print("  {:<32}{}\n", "camera", camera.name.empty() ? "default" : camera.name);
     json["scene"] = scene->file.string();

@@ -26,6 +26,9 @@ nlohmann::ordered_json finiteOrNull(double value) {
 /// Size of the original's pictures [VPT2024].
 constexpr const char* kPublishedSize = "1920x1080";
 
+/// Samples after which --error gives up on a picture in which none has found light.
+constexpr double kMostDark = 1 << 26;
+
 /// Whether a scene file is the original's JSON, which has a key "scene".
 bool isOriginalScene(const std::string& file) {
   if (lowerExtension(file) != ".json") return false;
@@ -77,7 +80,8 @@ void PathOptions::declare(Command app) {
       .range(1u, 4000000000u);
   app.addOption("--seconds", seconds, "path: stop after this time, with at least one sample per pixel").positive();
   app.addOption("--error", error,
-                "path: stop when the pixels' standard error (root mean square) is this fraction of the mean radiance")
+                "path: stop when the pixels' standard error (root mean square) is this fraction of the mean radiance; "
+                "of n samples that found no light, 3 count as if they could have")
       .positive();
   app.addOption("--bounces", bounces, "path: maximum number of scatterings (no limit)");
   app.addOption("--checkpoint", checkpoint,
@@ -183,6 +187,11 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
     progress.update(static_cast<int>(std::min(done, 1000000000u)));
     stopped = stopped || interrupted() || (path.seconds && elapsed() >= *path.seconds) ||
               (path.error && done >= 4 && tracer.statistics().relativeError <= *path.error);
+    if (path.error && !stopped && done < target && tracer.statistics().mean == glm::dvec3(0.0) &&
+        static_cast<double>(done) * settings.size.x * settings.size.y >= kMostDark) {
+      logWarning("--error: none of {} samples a pixel has found light; the picture is black", done);
+      stopped = true;
+    }
   }
   tracer.dropUnfinishedPass();
   const double seconds = elapsed();

@@ -108,13 +108,15 @@ std::vector<PlainRay> primaryRays(const Camera& camera, const glm::dvec3& origin
   const int side = static_cast<int>(std::sqrt(count));
   const glm::dvec3 right = glm::normalize(glm::cross(camera.direction, camera.up)),
                    up = glm::cross(right, camera.direction);
-  const double tangent = std::tan(0.5 * camera.verticalFov);
+  const double half = camera.halfHeight();
   std::vector<PlainRay> rays;
   for (int y = 0; y < side; ++y)
     for (int x = 0; x < side; ++x) {
       const double u = (2.0 * x + 1.0) / side - 1.0, v = (2.0 * y + 1.0) / side - 1.0;
-      rays.push_back({.origin = camera.position - origin,
-                      .direction = glm::normalize(camera.direction + tangent * (u * right + v * up))});
+      const glm::dvec3 across = half * (u * right + v * up);
+      const bool parallel = camera.isOrthographic();
+      rays.push_back({.origin = camera.position + (parallel ? across : glm::dvec3(0.0)) - origin,
+                      .direction = glm::normalize(camera.direction + (parallel ? glm::dvec3(0.0) : across))});
     }
   return rays;
 }

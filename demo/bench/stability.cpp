@@ -81,6 +81,7 @@ std::vector<StabilityRow> runStability(const StabilityContext& context, const st
   addRadiosityCases(cases);
   addPathCases(cases);
   addMediaCases(cases);
+  addLimitCases(cases);
   std::string known;
   for (const StabilityCase& c : cases)
     if (known.find(c.technique) == std::string::npos) known += (known.empty() ? "" : ", ") + c.technique;

@@ -49,6 +49,8 @@ void addPictureCases(std::vector<StabilityCase>& cases);
 /// Cases of all techniques and lights: far from the origin, large faces.
 void addPlaceCases(std::vector<StabilityCase>& cases);
 void addPathCases(std::vector<StabilityCase>& cases);
+/// Cases of light at its limits, of several techniques.
+void addLimitCases(std::vector<StabilityCase>& cases);
 void addMediaCases(std::vector<StabilityCase>& cases);
 void addRadiosityCases(std::vector<StabilityCase>& cases);
 

@@ -79,10 +79,13 @@ const ErrorRow& choose(const std::vector<ErrorRow>& rows, const char* wish, doub
   return *best;
 }
 
+/// Whether the reference's noise hides the error, which then has a bound only.
+bool isBound(const ErrorRow& row) { return row.value("at_noise", false); }
+
 std::string describe(const ErrorRow& row) {
-  return fmt::format("{}: {:.2f} ms per picture after {:.3g} s of set-up, NRMSE {:.3g} %",
+  return fmt::format("{}: {:.2f} ms per picture after {:.3g} s of set-up, NRMSE {}{:.3g} %",
                      row.at("label").get<std::string>(), number(row, "ms"), setupSeconds(row),
-                     100.0 * bench::rankedError(row, "nrmse"));
+                     isBound(row) ? "< " : "", 100.0 * bench::rankedError(row, "nrmse"));
 }
 
 int runTune(TuneOptions options) {
@@ -111,7 +114,9 @@ int runTune(TuneOptions options) {
       {"settings", row.contains("spp") ? nlohmann::ordered_json::array() : row.at("settings")}};
   if (row.contains("spp")) settings["spp"] = row.at("spp");
   settings["measured"] = {{"ms", row.at("ms")},           {"setup_ms", row.at("setup_ms")},
-                          {"nrmse", row.at("nrmse")},     {"size", options.bench.size},
+                          {"nrmse", bench::rankedError(row, "nrmse")},
+                          {"nrmse_is_bound", isBound(row)},
+                          {"size", options.bench.size},
                           {"scene", options.bench.scene}, {"renderer", result->report.renderer}};
   writeFileAtomically(options.output, settings.dump(2) + "\n");
   if (!options.common.quiet)

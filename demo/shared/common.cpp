@@ -178,8 +178,8 @@ Camera chooseCamera(const Scene& scene, const std::string& text) {
     throwBadInput("--camera {}: neither a camera of the scene ({}) nor px,py,pz,tx,ty,tz,fov", text, known);
   }
   Camera camera;
-  camera.position = {numbers[0], numbers[1], numbers[2]};
-  const glm::dvec3 view = glm::dvec3(numbers[3], numbers[4], numbers[5]) - camera.position;
+  camera.position = glm::dvec3(numbers[0], numbers[1], numbers[2]) - scene.origin;
+  const glm::dvec3 view = glm::dvec3(numbers[3] - numbers[0], numbers[4] - numbers[1], numbers[5] - numbers[2]);
   if (glm::length(view) == 0.0) throwBadInput("--camera {}: the target is the position", text);
   if (!(numbers[6] > 0.0 && numbers[6] < 180.0))
     throwBadInput("--camera {}: the field of view is in degrees, above 0 and below 180", text);

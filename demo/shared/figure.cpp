@@ -142,7 +142,7 @@ std::string figureHtml(const Figure& figure, std::size_t bytes) {
     CHECK(difference.size() == exact.size(), "{} and {} pixels", difference.size(), exact.size());
     for (std::size_t i = 0; i < exact.size(); ++i) difference[i] -= exact[i];
     nlohmann::ordered_json json{{"row", p.row},
-                                {"exact", p.reference},
+                                {"reference", p.reference},
                                 {"block", within},
                                 {"first_choice", p.isFirstChoice},
                                 {"scale", halfScale(difference)},

@@ -137,16 +137,14 @@ std::vector<gl::Lines::Line> recordsOf(const IrradianceCache& cache, const Rende
                                        const Cascade& placed, int cascade, int most) {
   const glm::vec3 eye(camera.position - renderer.origin()), ahead(camera.direction);
   const glm::vec3 right = glm::normalize(glm::cross(ahead, glm::vec3(camera.up))), up = glm::cross(right, ahead);
-  const float tangent = std::tan(0.5f * static_cast<float>(camera.verticalFov));
+  const auto half = static_cast<float>(camera.halfHeight());
   const float aspect = static_cast<float>(renderer.size().x) / static_cast<float>(renderer.size().y);
   std::vector<std::pair<std::uint32_t, IrradianceCache::Shown>> seen;
   for (const IrradianceCache::Shown& record : cache.shown()) {
     if (record.cascade != cascade) continue;
     const glm::vec3 to = record.position - eye;
-    const float depth = glm::dot(to, ahead);
-    if (depth <= 0.0f || std::abs(glm::dot(to, up)) > tangent * depth ||
-        std::abs(glm::dot(to, right)) > aspect * tangent * depth)
-      continue;
+    const float depth = glm::dot(to, ahead), high = camera.isOrthographic() ? half : half * depth;
+    if (depth <= 0.0f || std::abs(glm::dot(to, up)) > high || std::abs(glm::dot(to, right)) > aspect * high) continue;
     const glm::uvec3 cell(record.cell);
     std::uint32_t hash = cell.x * 73856093u ^ cell.y * 19349663u ^ cell.z * 83492791u ^
                          static_cast<std::uint32_t>(record.face) * 2654435761u;

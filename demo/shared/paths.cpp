@@ -1,5 +1,7 @@
 #include "shared/paths.hpp"
 
+#include "scene/scene_file.hpp"
+
 #include <cmath>
 
 namespace lucerna::demo {
@@ -26,7 +28,7 @@ std::vector<KeyFrame> orbit(const Scene& scene) {
 
 Spline pathOf(const Scene& scene, const std::filesystem::path& keys) {
   const std::filesystem::path file = keys.empty() ? scene.keyFrames : keys;
-  return Spline(file.empty() ? orbit(scene) : readKeyFrames(file));
+  return Spline(file.empty() ? orbit(scene) : keyFramesOf(scene, file));
 }
 
 }  // namespace lucerna::demo

@@ -27,8 +27,8 @@ void Overlay::drawGlyphs(const Frame& frame) {
   const Camera& camera = state_.camera->camera();
   const IrradianceCache* cache = cacheOf(side.renderer->technique());  // their light changes from frame to frame
   const std::string are = fmt::format("{} {} {} {} {} {} {}", static_cast<int>(state_.glyphs), side.builtAs,
-                                      state_.glyphCascade, state_.glyphMost, cameraText(camera), state_.shown,
-                                      state_.glyphs == Glyphs::records && cache ? cache->frame() : 0);
+                                      state_.glyphCascade, state_.glyphMost, cameraText(*state_.scene, camera),
+                                      state_.shown, state_.glyphs == Glyphs::records && cache ? cache->frame() : 0);
   if (are != glyphsAre_)
     glyphs_ = glyphsOf(state_.glyphs, *side.renderer, *state_.scene, camera, state_.glyphCascade, state_.glyphMost);
   glyphsAre_ = are;

@@ -59,7 +59,9 @@ void frameScene(WalkState& s) {
   const Bounds& bounds = s.scene->bounds;
   Camera camera = s.camera->camera();
   const double radius = 0.5 * std::max(glm::length(bounds.extent()), 1e-9);
-  camera.position = bounds.centre() - camera.direction * (radius / std::sin(0.5 * camera.verticalFov));
+  const double distance = camera.isOrthographic() ? radius : radius / std::sin(0.5 * camera.verticalFov);
+  if (camera.isOrthographic()) camera.orthographicHeight = 2.0 * radius;
+  camera.position = bounds.centre() - camera.direction * distance;
   s.camera->place(camera);
   s.path.follows = false;
 }
@@ -69,7 +71,8 @@ void showCamera(Ui& ui, WalkState& s, Host& host) {
   line(fmt::format("at {:.4g}, {:.4g}, {:.4g}", c.position.x, c.position.y, c.position.z));
   line(fmt::format("looks along {:.3f}, {:.3f}, {:.3f}", c.direction.x, c.direction.y, c.direction.z));
   float degrees = static_cast<float>(glm::degrees(c.verticalFov));
-  if (slider(ui, "field of view", degrees, 10.0f, 120.0f, "%.1f degrees")) {
+  if (c.isOrthographic()) line(fmt::format("orthographic, {:.4g} high", c.orthographicHeight));
+  else if (slider(ui, "field of view", degrees, 10.0f, 120.0f, "%.1f degrees")) {
     s.path.follows = false;
     s.camera->setFieldOfView(glm::radians(static_cast<double>(degrees)));
   }
@@ -79,7 +82,7 @@ void showCamera(Ui& ui, WalkState& s, Host& host) {
   if (button(ui, "frame the scene")) frameScene(s);
   explain("Moves back along the line of sight until the whole scene is in view.");
   ImGui::SameLine();
-  if (button(ui, "copy as --camera")) ImGui::SetClipboardText(("--camera " + cameraText(c)).c_str());
+  if (button(ui, "copy as --camera")) ImGui::SetClipboardText(("--camera " + cameraText(*s.scene, c)).c_str());
   if (s.scene->cameras.size() > 1 || !s.scene->cameras.front().name.empty())
     for (const Camera& camera : s.scene->cameras) {
       const std::string name = camera.name.empty() ? "first view" : camera.name;
@@ -467,7 +470,9 @@ void showRecord(Ui& ui, WalkState& s, Host& host) {
   if (button(ui, "write")) {
     try {
       if (s.keyFrames.size() < 2) throwBadInput("a path has at least two key frames; there are {}", s.keyFrames.size());
-      writeFileAtomically(s.keyFramesFile, textOfKeyFrames(s.keyFrames, "Recorded in " + s.scene->name + "."));
+      std::vector<KeyFrame> keys = s.keyFrames;
+      for (KeyFrame& key : keys) key.position += s.scene->origin;
+      writeFileAtomically(s.keyFramesFile, textOfKeyFrames(keys, "Recorded in " + s.scene->name + "."));
       s.say(fmt::format("{}: {} key frames", s.keyFramesFile, s.keyFrames.size()));
     } catch (const Error& error) { s.say(error.what()); }
   }

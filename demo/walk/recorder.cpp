@@ -30,7 +30,7 @@ void Recorder::takeShot(const Shown& shown) {
     const fs::path stem = freeName(state_.shotFolder, state_.scene->name);
     std::string note = fmt::format("Lucerna {} on {}\n{} --camera {} --size {}x{}\nexposure {:.6g}", LUCERNA_VERSION,
                                    state_.rendererName, commandLine("render", state_.scene->file.string(), side.built),
-                                   cameraText(state_.camera->camera()), side.renderer->size().x,
+                                   cameraText(*state_.scene, state_.camera->camera()), side.renderer->size().x,
                                    side.renderer->size().y, state_.exposure);
     if (side.judgement.known())
       note += fmt::format("\nrelative error {:.4g}, {:.4g} to {:.4g} (99 %), against {} path-traced samples a pixel",

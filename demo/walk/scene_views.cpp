@@ -59,13 +59,15 @@ std::vector<float> CountViews::visits(const Camera& camera, glm::ivec2 size) {
   if (!rays_) rays_.emplace(scene_, context_.capabilities());
   const glm::dvec3 right = glm::normalize(glm::cross(camera.direction, camera.up)),
                    up = glm::cross(right, camera.direction);
-  const double pixel = 2.0 * std::tan(0.5 * camera.verticalFov) / size.y;
+  const double pixel = 2.0 * camera.halfHeight() / size.y;
   std::vector<Ray> rays;
   for (int y = 0; y < size.y; ++y)
     for (int x = 0; x < size.x; ++x) {
-      const glm::dvec3 direction =
-          camera.direction + pixel * ((x + 0.5 - 0.5 * size.x) * right) + pixel * ((y + 0.5 - 0.5 * size.y) * up);
-      rays.push_back({glm::vec3(camera.position - rays_->origin()), 0.0f, glm::vec3(glm::normalize(direction)), 3e38f});
+      const glm::dvec3 across = pixel * ((x + 0.5 - 0.5 * size.x) * right) + pixel * ((y + 0.5 - 0.5 * size.y) * up);
+      const bool parallel = camera.isOrthographic();
+      const glm::dvec3 origin = camera.position + (parallel ? across : glm::dvec3(0.0));
+      const glm::dvec3 direction = camera.direction + (parallel ? glm::dvec3(0.0) : across);
+      rays.push_back({glm::vec3(origin - rays_->origin()), 0.0f, glm::vec3(glm::normalize(direction)), 3e38f});
     }
   const gl::Program& program = programs_.loadCompute("ray visits", "rays/trace_rays.comp",
                                                      {{"ALPHA_MASKS", 0},

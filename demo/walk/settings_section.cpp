@@ -119,7 +119,7 @@ void showSettings(Ui& ui, WalkState& s) {
   SideState& side = s.sides[static_cast<std::size_t>(s.edited)];
   if (button(ui, "copy as command line"))
     ImGui::SetClipboardText((commandLine("render", s.scene->file.string(), side.options) + " --camera " +
-                             cameraText(s.camera->camera()) + " -o picture.exr")
+                             cameraText(*s.scene, s.camera->camera()) + " -o picture.exr")
                                 .c_str());
   ImGui::SameLine();
   if (button(ui, "all defaults")) side.options.settings.clear(), side.options.deviations.clear();

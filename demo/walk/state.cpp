@@ -50,10 +50,12 @@ void assign(std::vector<std::string>& assignments, const std::string& key, const
   }
 }
 
-std::string cameraText(const Camera& c) {
-  const glm::dvec3 target = c.position + c.direction;
-  return fmt::format("{:.7g},{:.7g},{:.7g},{:.7g},{:.7g},{:.7g},{:.5g}", c.position.x, c.position.y, c.position.z,
-                     target.x, target.y, target.z, glm::degrees(c.verticalFov));
+std::string cameraText(const Scene& scene, const Camera& c) {
+  if (c.isOrthographic()) return c.name;  // numbers stand for perspective views alone
+  const glm::dvec3 from = c.position + scene.origin, target = from + c.direction;
+  const int digits = scene.origin == glm::dvec3(0.0) ? 7 : 13;
+  return fmt::format("{:.{}g},{:.{}g},{:.{}g},{:.{}g},{:.{}g},{:.{}g},{:.5g}", from.x, digits, from.y, digits, from.z,
+                     digits, target.x, digits, target.y, digits, target.z, digits, glm::degrees(c.verticalFov));
 }
 
 }  // namespace lucerna::demo

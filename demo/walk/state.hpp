@@ -150,6 +150,6 @@ std::string commandLine(const std::string& command, const std::string& scene, co
 /// Sets KEY=VALUE, replacing any earlier assignment of the key; an empty value removes it.
 void assign(std::vector<std::string>& assignments, const std::string& key, const std::string& value);
 /// The argument of --camera.
-std::string cameraText(const Camera& camera);
+std::string cameraText(const Scene& scene, const Camera& camera);
 
 }  // namespace lucerna::demo

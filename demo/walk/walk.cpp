@@ -15,6 +15,7 @@
 #include "measure/image_errors.hpp"
 #include "measure/reference.hpp"
 #include "shared/completions.hpp"
+#include "scene/fingerprint.hpp"
 #include "scene/key_frames.hpp"
 #include "render/deviations.hpp"
 #include "walk/keys.hpp"
@@ -80,10 +81,7 @@ PartFolder framesOf(const WalkOptions& options, const Scene& scene, const Render
         "--technique irradiance-cache: a frame goes on from the one before it, which may be another part's: not with "
         "--part and --checkpoint");
   Hash views;
-  for (const Camera& camera : cameras) {
-    views.add(camera.position), views.add(camera.direction), views.add(camera.up);
-    views.add(camera.verticalFov);
-  }
+  for (const Camera& camera : cameras) addCamera(views, camera);
   const std::string settings = options.picture.toJson().dump();
   return PartFolder(
       options.part, "walk",

@@ -142,6 +142,32 @@ std::vector<std::uint8_t> readFileBytes(const fs::path& file) { return readWhole
 
 std::string readFileText(const fs::path& file) { return readWhole<std::string>(file); }
 
+std::string textOf(const fs::path& file, std::span<const std::uint8_t> bytes) {
+  std::string text;
+  const auto begins = [&](int a, int b) { return bytes.size() >= 2 && bytes[0] == a && bytes[1] == b; };
+  if (begins(0xff, 0xfe) || begins(0xfe, 0xff)) {
+    const std::size_t high = begins(0xfe, 0xff) ? 0 : 1;
+    const auto unit = [&](std::size_t i) { return std::uint32_t{bytes[i + high]} << 8 | bytes[i + 1 - high]; };
+    for (std::size_t i = 2; i + 1 < bytes.size(); i += 2) {
+      std::uint32_t code = unit(i);
+      if (code >= 0xd800 && code < 0xdc00 && i + 3 < bytes.size()) {  // two units above U+FFFF
+        code = 0x10000 + ((code - 0xd800) << 10) + (unit(i + 2) & 0x3ffu);
+        i += 2;
+      }
+      const int more = code < 0x80 ? 0 : code < 0x800 ? 1 : code < 0x10000 ? 2 : 3;
+      constexpr std::uint32_t kLead[] = {0, 0xc0, 0xe0, 0xf0};
+      text += static_cast<char>(kLead[more] | code >> (6 * more));
+      for (int k = more; k-- > 0;) text += static_cast<char>(0x80u | (code >> (6 * k) & 0x3fu));
+    }
+  } else {
+    const bool mark = begins(0xef, 0xbb) && bytes.size() >= 3 && bytes[2] == 0xbf;
+    text.assign(bytes.begin() + (mark ? 3 : 0), bytes.end());
+  }
+  if (text.find('\0') != std::string::npos)
+    throwBadInput("{}: binary data, expected text in UTF-8, or UTF-16 with a byte order mark", file.string());
+  return text;
+}
+
 void checkWritable(const fs::path& file) {
   const fs::path temporary = temporaryFor(file);
   const int failure = writeAll(temporary, {}, false);

@@ -20,6 +20,10 @@ std::vector<std::uint8_t> readFileBytes(const std::filesystem::path& file);
 /// The same as text.
 std::string readFileText(const std::filesystem::path& file);
 
+/// A text as UTF-8, whatever its byte order mark says: UTF-8 or UTF-16; without one as it is. Throws Error(badInput)
+/// naming the file if it holds bytes 0 then: it is no text.
+std::string textOf(const std::filesystem::path& file, std::span<const std::uint8_t> bytes);
+
 /// Writes a file completely or not at all: into a temporary file in the same folder, which is then renamed. Temporary
 /// files left by killed processes in that folder are removed first. On failure (no such folder, no permission, disk
 /// full) nothing new is left behind, an older file of that name is unchanged, and Error(badInput) names the file and

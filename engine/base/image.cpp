@@ -1,12 +1,13 @@
 // Images on disk. The library for each format, and why:
-// - 8-bit pictures (png, jpg, tga, bmp): DevIL, after the checks of base/picture_header.hpp. It keeps its current
-//   image, error stack and modes in globals, so one mutex guards all of it.
+// - 8-bit pictures (png, jpg, tga): DevIL, after the checks of base/picture_header.hpp. It keeps its current image,
+//   error stack and modes in globals, so one mutex guards all of it. bmp: base/bmp.cpp.
 // - Radiance hdr: implemented here. DevIL 1.7.8 reads every value 256/255 times too large (0.4 %), truncates mantissas
 //   instead of rounding them when writing, and accepts truncated files; comparisons here measure bias far below that.
 // - exr: OpenEXR, since Debian's DevIL has none. pfm: a header and raw floats.
 // Every format goes through memory, so file errors are handled in one place (base/files.hpp).
 #include "base/image.hpp"
 
+#include "base/bmp.hpp"
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "base/log.hpp"
@@ -15,11 +16,14 @@
 #include <IL/il.h>
 #include <ImathBox.h>
 #include <ImfChannelList.h>
+#include <ImfChromaticities.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfIO.h>
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfRgbaFile.h>
+#include <ImfStandardAttributes.h>
 
 #include <algorithm>
 #include <array>
@@ -75,7 +79,7 @@ class DevilImage {
   /// refused.
   void decode(std::span<const std::uint8_t> bytes, const fs::path& file) {
     const PictureHeader header = checkPicture(bytes, file);
-    constexpr ILenum kTypes[] = {IL_PNG, IL_JPG, IL_TGA, IL_BMP};
+    constexpr ILenum kTypes[] = {IL_PNG, IL_JPG, IL_TGA};
     const ILenum type = kTypes[static_cast<std::size_t>(header.format)];
     const bool loaded = bytes.size() <= std::numeric_limits<ILuint>::max() &&
                         ilLoadL(type, bytes.data(), static_cast<ILuint>(bytes.size())) != IL_FALSE;
@@ -400,29 +404,116 @@ void checkExrHeader(std::span<const std::uint8_t> bytes, const fs::path& file) {
   }
 }
 
-Image decodeExr(std::span<const std::uint8_t> bytes, const fs::path& file) {
-  checkExrHeader(bytes, file);
-  MemoryInput stream(file.string(), bytes);
-  Imf::InputFile input(stream);
-  const Imath::Box2i window = input.header().dataWindow();
-  const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
-  const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
-  checkPictureSize(file, width, height, bytes.size(), kFreeFloatPixels);
-  const Imf::ChannelList& channels = input.header().channels();
-  const bool colour = channels.findChannel("R") && channels.findChannel("G") && channels.findChannel("B");
-  if (!colour && !channels.findChannel("Y")) throwBadInput("{}: an EXR without channels R, G, B or Y", file.string());
+/// XYZ from the colours of three primaries and their white (SMPTE RP 177: the white is the primaries' sum, of Y 1).
+glm::dmat3 xyzFrom(const Imf::Chromaticities& c) {
+  const auto xyz = [](const Imath::V2f& p) {
+    const double x = static_cast<double>(p.x), y = static_cast<double>(p.y);
+    return glm::dvec3(x, y, 1.0 - x - y) / y;
+  };
+  const glm::dmat3 primaries(xyz(c.red), xyz(c.green), xyz(c.blue));
+  const glm::dvec3 sums = glm::inverse(primaries) * xyz(c.white);
+  return glm::dmat3(primaries[0] * sums[0], primaries[1] * sums[1], primaries[2] * sums[2]);
+}
 
-  Image image(static_cast<int>(width), static_cast<int>(height));
+/// To the primaries of Rec. 709; another white becomes its white by Bradford's cone responses [Lam1985].
+glm::dmat3 rec709From(const Imf::Chromaticities& from) {
+  const Imf::Chromaticities rec709;  // OpenEXR's default
+  const glm::dmat3 cones =
+      glm::transpose(glm::dmat3(0.8951, 0.2664, -0.1614, -0.7502, 1.7135, 0.0367, 0.0389, -0.0685, 1.0296));
+  const glm::dvec3 white(1.0), ratio = (cones * xyzFrom(rec709) * white) / (cones * xyzFrom(from) * white);
+  const glm::dmat3 adapted = glm::inverse(cones) * glm::dmat3(ratio.x, 0, 0, 0, ratio.y, 0, 0, 0, ratio.z) * cones;
+  return glm::inverse(xyzFrom(rec709)) * adapted * xyzFrom(from);
+}
+
+/// In place. Colours that Rec. 709 cannot show would be negative radiances: those become 0.
+void convertToRec709(Image& image, const Imf::Chromaticities& from, const fs::path& file) {
+  const glm::dmat3 matrix = rec709From(from);
+  for (int c = 0; c < 3; ++c)
+    for (int r = 0; r < 3; ++r)
+      if (!std::isfinite(matrix[c][r])) throwBadInput("{}: chromaticities that are no primaries", file.string());
+  std::size_t clipped = 0;
+  for (glm::vec3& p : image.pixels) {
+    const bool wasRadiance = p.x >= 0.0f && p.y >= 0.0f && p.z >= 0.0f;
+    p = glm::vec3(matrix * glm::dvec3(p));
+    if (!wasRadiance || (p.x >= 0.0f && p.y >= 0.0f && p.z >= 0.0f)) continue;
+    p = glm::max(p, glm::vec3(0.0f));
+    ++clipped;
+  }
+  if (clipped > 0)
+    logWarning("{}: {} pixels have colours outside of Rec. 709; their negative channels become 0", file.string(),
+               clipped);
+}
+
+/// Reads channels into the picture's window; what lies outside of it is cut off.
+void readExrChannels(Imf::InputFile& input, bool colour, const Imath::Box2i& window, Image& data) {
   Imf::FrameBuffer frame;
   const char* names[3] = {"R", "G", "B"};
   for (std::size_t c = 0; c < (colour ? 3u : 1u); ++c)
     frame.insert(colour ? names[c] : "Y",
-                 Imf::Slice::Make(Imf::FLOAT, &image.pixels[0][static_cast<int>(c)], window, kPixelStride,
-                                  kPixelStride * static_cast<std::size_t>(width)));
+                 Imf::Slice::Make(Imf::FLOAT, &data.pixels[0][static_cast<int>(c)], window, kPixelStride,
+                                  kPixelStride * static_cast<std::size_t>(data.width)));
   input.setFrameBuffer(frame);
   input.readPixels(window.min.y, window.max.y);
   if (!colour)
-    for (glm::vec3& p : image.pixels) p = glm::vec3(p.x);
+    for (glm::vec3& p : data.pixels) p = glm::vec3(p.x);
+}
+
+/// Luminance, and chroma of half the resolution: OpenEXR's own reader interpolates and weighs it.
+void readExrChroma(MemoryInput& stream, const Imath::Box2i& window, Image& data) {
+  stream.seekg(0);
+  Imf::RgbaInputFile input(stream);
+  std::vector<Imf::Rgba> row(static_cast<std::size_t>(data.width));
+  for (int y = window.min.y; y <= window.max.y; ++y) {
+    input.setFrameBuffer(row.data() - window.min.x, 1, 0);
+    input.readPixels(y);
+    for (int x = 0; x < data.width; ++x) {
+      const Imf::Rgba& p = row[static_cast<std::size_t>(x)];
+      data.at(x, y - window.min.y) = {p.r, p.g, p.b};
+    }
+  }
+}
+
+Image decodeExr(std::span<const std::uint8_t> bytes, const fs::path& file) {
+  checkExrHeader(bytes, file);
+  MemoryInput stream(file.string(), bytes);
+  Imf::InputFile input(stream);
+  const auto checked = [&](const Imath::Box2i& window) {
+    const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
+    const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
+    checkPictureSize(file, width, height, bytes.size(), kFreeFloatPixels);
+    return glm::ivec2(width, height);
+  };
+  const Imath::Box2i window = input.header().dataWindow(), display = input.header().displayWindow();
+  const glm::ivec2 dataSize = checked(window), size = checked(display);
+  const Imf::ChannelList& channels = input.header().channels();
+  const bool colour = channels.findChannel("R") && channels.findChannel("G") && channels.findChannel("B");
+  const bool chroma = !colour && channels.findChannel("Y") && channels.findChannel("RY") && channels.findChannel("BY");
+  if (!colour && !channels.findChannel("Y")) {
+    std::string names;
+    for (auto channel = channels.begin(); channel != channels.end(); ++channel)
+      names += fmt::format("{}{}", names.empty() ? "" : ", ", channel.name());
+    throwBadInput("{}: an EXR of the channels {}; R, G and B, or Y, are read", file.string(), names);
+  }
+
+  Image data(dataSize.x, dataSize.y);
+  if (chroma) readExrChroma(stream, window, data);
+  else readExrChannels(input, colour, window, data);
+  if ((colour || chroma) && Imf::hasChromaticities(input.header())) {
+    const Imf::Chromaticities given = Imf::chromaticities(input.header()), usual;
+    constexpr float kRounding = 1e-4f;
+    const auto near = [](const Imath::V2f& a, const Imath::V2f& b) { return (a - b).length() < kRounding; };
+    if (!near(given.red, usual.red) || !near(given.green, usual.green) || !near(given.blue, usual.blue) ||
+        !near(given.white, usual.white))
+      convertToRec709(data, given, file);
+  }
+  // The picture is what is displayed: black where there are no data, without data around it.
+  if (window == display) return data;
+  if (!window.intersects(display))
+    throwBadInput("{}: an EXR whose pixels lie outside of its display window", file.string());
+  Image image(size.x, size.y);
+  for (int y = std::max(window.min.y, display.min.y); y <= std::min(window.max.y, display.max.y); ++y)
+    for (int x = std::max(window.min.x, display.min.x); x <= std::min(window.max.x, display.max.x); ++x)
+      image.at(x - display.min.x, y - display.min.y) = data.at(x - window.min.x, y - window.min.y);
   return image;
 }
 
@@ -518,6 +609,7 @@ Bitmap toneMapped(const Image& radiance, float exposure) {
 }
 
 Bitmap decodeBitmap(std::span<const std::uint8_t> bytes, const fs::path& file) {
+  if (startsWith(bytes, "BM")) return decodeBmp(bytes, file);
   DevilImage devil;
   devil.decode(bytes, file);
   const std::span<const std::uint8_t> rgba = devil.rgba(file);

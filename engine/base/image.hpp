@@ -5,9 +5,9 @@
 // row.
 // - Bitmap: 8-bit RGBA as read from a texture file or written to a PNG, sRGB-encoded unless its user says otherwise;
 //   row 0 is the TOP row.
-// Formats: png, jpg, tga and bmp are read and png is written through DevIL, after a check of every byte count
-// (picture_header.hpp); exr through OpenEXR; hdr (Radiance RGBE; why not through DevIL: image.cpp) and pfm (Debevec's
-// format: bottom row first) are small enough to implement here.
+// Formats: png, jpg and tga are read and png is written through DevIL, after a check of every byte count
+// (picture_header.hpp); exr through OpenEXR; bmp (bmp.hpp), hdr (Radiance RGBE) and pfm (Debevec's format: bottom row
+// first) are small enough to implement here; why not through DevIL: image.cpp.
 #pragma once
 
 #include <algorithm>

@@ -114,6 +114,7 @@ PictureHeader checkTga(Bytes bytes, const fs::path& file) {
   const std::int64_t paletteEntries = littleEndian(bytes, 5, 2), width = littleEndian(bytes, 12, 2),
                      height = littleEndian(bytes, 14, 2);
   const int paletteBits = bytes[7], bits = bytes[16];
+  constexpr int kOtherOrders = 0xd0;  // rows from the right, interleaved rows
   const bool grey = kind == 3 || kind == 11, palette = kind == 1 || kind == 9, packets = kind >= 9;
   const bool known = (kind >= 1 && kind <= 3) || (kind >= 9 && kind <= 11);
   const bool depth = palette || grey ? bits == 8 : bits == 24 || bits == 32;
@@ -122,9 +123,11 @@ PictureHeader checkTga(Bytes bytes, const fs::path& file) {
   const bool paletteFits = palette ? paletteKind == 1 && paletteEntries >= 1 && paletteEntries <= 256 &&
                                          littleEndian(bytes, 3, 2) == 0 && (paletteBits == 24 || paletteBits == 32)
                                    : paletteKind == 0;
-  if (!known || !depth || !paletteFits)
+  if (!known || !depth || !paletteFits || (bytes[17] & kOtherOrders))
     throwBadInput(
-        "{}: an unsupported kind of Targa: expected grey of 8 bits, colours of 24 or 32, or a palette of them",
+        "{}: an unsupported kind of Targa: expected grey of 8 bits, colours of 24 or 32, or a palette of them, rows "
+        "from "
+        "the left",
         file.string());
   const PictureHeader header = checkedHeader(file, bytes, PictureFormat::tga, width, height);
   const std::size_t begin =
@@ -153,27 +156,6 @@ PictureHeader checkTga(Bytes bytes, const fs::path& file) {
   return header;
 }
 
-/// 14 bytes of file header, 40 or more of picture header, a palette, rows padded to a multiple of four bytes.
-PictureHeader checkBmp(Bytes bytes, const fs::path& file) {
-  constexpr std::size_t kHead = 14 + 40;
-  if (bytes.size() < kHead) throwTruncated(file, "BMP");
-  const std::int64_t begin = littleEndian(bytes, 10, 4), headerBytes = littleEndian(bytes, 14, 4),
-                     width = littleEndian(bytes, 18, 4), planes = littleEndian(bytes, 26, 2),
-                     bits = littleEndian(bytes, 28, 2), compression = littleEndian(bytes, 30, 4),
-                     entries = littleEndian(bytes, 46, 4);
-  const auto height = std::int64_t{static_cast<std::int32_t>(littleEndian(bytes, 22, 4))};  // negative: top row first
-  if (headerBytes < 40 || headerBytes > 124 || planes != 1 || compression != 0 ||
-      (bits != 8 && bits != 24 && bits != 32))
-    throwBadInput("{}: an unsupported kind of BMP: expected 8, 24 or 32 bits, not compressed", file.string());
-  const PictureHeader header = checkedHeader(file, bytes, PictureFormat::bmp, width, height < 0 ? -height : height);
-  const std::int64_t paletteEntries = bits == 8 ? (entries == 0 ? 256 : entries) : 0,
-                     rowBytes = (width * bits + 31) / 32 * 4;
-  if (paletteEntries > 256 || begin < 14 + headerBytes + 4 * paletteEntries)
-    throwBadInput("{}: damaged picture: a BMP whose pixels begin within its header", file.string());
-  if (begin + rowBytes * header.height > static_cast<std::int64_t>(bytes.size())) throwTruncated(file, "BMP");
-  return header;
-}
-
 }  // namespace
 
 void checkPictureSize(const fs::path& file, std::int64_t width, std::int64_t height) {
@@ -195,7 +177,6 @@ void checkPictureSize(const fs::path& file, std::int64_t width, std::int64_t hei
 PictureHeader checkPicture(Bytes bytes, const fs::path& file) {
   if (startsWith(bytes, "\x89PNG\r\n\x1a\n")) return checkPng(bytes, file);
   if (startsWith(bytes, "\xff\xd8\xff")) return checkJpeg(bytes, file);
-  if (startsWith(bytes, "BM") && bytes.size() > 26 && bytes[26] == 1) return checkBmp(bytes, file);
   if (lowerExtension(file) == ".tga") return checkTga(bytes, file);
   throwBadInput("{}: not a picture of a known format: {}", file.string(), kFormats);
 }

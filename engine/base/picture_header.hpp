@@ -1,10 +1,10 @@
 // Checks the header and structure of an 8-bit picture file before a decoder sees it (no GL).
 //
 // DevIL 1.7.8 crashes on damaged XPM, DDS, ICO and PNM, hangs on a truncated PNG, and allocates whatever a header asks
-// for. So only PNG, JPEG, Targa and BMP are decoded, recognised by content (Targa, which has no magic number, by
-// extension and header). Each file is walked completely before it is decoded: sizes, chunks and segments, remaining
-// bytes against pixels. Sources: PNG (ISO 15948) section 5; JPEG (ITU T.81) annex B; Truevision TGA 2.0;
-// BITMAPINFOHEADER (Microsoft).
+// for. So it decodes only PNG, JPEG and Targa, recognised by content (Targa, which has no magic number, by extension
+// and header); BMP is read without it (bmp.hpp). Each file is walked completely before it is decoded: sizes, chunks and
+// segments, remaining bytes against pixels. Sources: PNG (ISO 15948) section 5; JPEG (ITU T.81) annex B; Truevision TGA
+// 2.0.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@
 
 namespace lucerna {
 
-enum class PictureFormat { png, jpeg, tga, bmp };
+enum class PictureFormat { png, jpeg, tga };
 
 struct PictureHeader {
   PictureFormat format = PictureFormat::png;

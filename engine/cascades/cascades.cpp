@@ -49,8 +49,8 @@ std::vector<Cascade> placeCascadesAround(const CascadeSettings& settings, const 
   CascadeSettings single = settings;
   single.steps = 1;
   std::vector<Cascade> cascades = placeCascades(single, scene, camera.position, camera.direction);
-  const double tangent = std::tan(0.5 * camera.verticalFov);
-  const double cosine = 1.0 / std::sqrt(1.0 + tangent * tangent * (1.0 + aspect * aspect));  // of the view's corners
+  const double toCorner = camera.halfHeight() * std::sqrt(1.0 + aspect * aspect);  // at distance 1 along the view
+  const double cosine = 1.0 / std::sqrt(1.0 + toCorner * toCorner);  // of the view's corners
   const bool held = settings.heldInScene && !scene.empty();
   const glm::dvec3 nearest = held ? glm::clamp(camera.position, scene.min, scene.max) : camera.position;
   for (Cascade& cascade : cascades) {
@@ -61,6 +61,10 @@ std::vector<Cascade> placeCascadesAround(const CascadeSettings& settings, const 
                  pushed = settings.push * 0.5 * settings.cells * cascade.cellSize,
                  beside2 = pushed * pushed * (1.0 - cosine * cosine);
     cascade.reach = half > 0.0 ? pushed * cosine + std::sqrt(std::max(half * half - beside2, 0.0)) : 0.0;
+    if (camera.isOrthographic() && half > 0.0) {  // its corners are toCorner from the axis everywhere
+      const double along = std::sqrt(std::max(half * half - toCorner * toCorner, 0.0));
+      cascade.reach = along > 0.0 ? std::hypot(pushed + along, toCorner) : cascade.cellSize;
+    }
     cascade.centre = nearest;
   }
   return cascades;

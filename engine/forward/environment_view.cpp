@@ -34,7 +34,8 @@ void EnvironmentView::record(const gl::Framebuffer& target, const gl::VertexArra
   program_->use();
   program_->set("environmentRadiance", radiance_);
   if (picture_) {
-    const double high = std::tan(0.5 * camera.verticalFov), wide = high * size.x / size.y;
+    // All rays of an orthographic view see one point of the environment.
+    const double high = camera.isOrthographic() ? 0.0 : camera.halfHeight(), wide = high * size.x / size.y;
     const glm::dvec3 right = glm::normalize(glm::cross(camera.direction, camera.up));
     program_->set("viewForward", glm::vec3(camera.direction));
     program_->set("viewRight", glm::vec3(wide * right));

@@ -86,9 +86,10 @@ GpuScene::GpuScene(const Scene& scene, const SceneFeatures& features, const gl::
 
   // Materials, with the textures that the scene needs.
   for (const Material& material : scene.materials) {
-    Surface surface{material.bsdf == Bsdf::conductor ? glm::vec3(0.0f) : material.diffuse,
-                    hasCoat(material) ? material.specular : glm::vec3(0.0f), material.emission,
-                    std::max(material.roughness, static_cast<float>(COAT_LEAST_ALPHA))};
+    const bool isCoated = hasCoat(material), isSmooth = !isCoated && material.bsdf != Bsdf::diffuse;
+    Surface surface{isCoated && material.bsdf == Bsdf::conductor ? glm::vec3(0.0f) : material.diffuse,
+                    material.bsdf == Bsdf::dielectric ? glm::vec3(0.0f) : material.specular, material.emission,
+                    isSmooth ? 0.0f : std::max(material.roughness, static_cast<float>(COAT_LEAST_ALPHA))};
     if (features.diffuseTextures && material.diffuseTexture >= 0)
       surface.diffuseTexture = upload(material.diffuseTexture, kColour);
     surface.masked = features.alphaMasks && material.alphaMasked;

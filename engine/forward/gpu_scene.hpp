@@ -75,7 +75,7 @@ class GpuScene {
  private:
   struct Surface {
     glm::vec3 diffuse, specular, emission;
-    float alpha;  ///< of the coat
+    float alpha;  ///< of the coat; 0: a mirror or glass, which only rays show
     int diffuseTexture = -1, maskTexture = -1, emissionTexture = -1, normalTexture = -1, metalTexture = -1;
     bool masked = false;
     float normalScale = 0.0f;  ///< 0: no normal map

@@ -69,13 +69,44 @@ LightViews lightViews(const PointLight& light, const Bounds& scene) {
   LightViews views;
   views.position = light.position;
   views.intensity = light.intensity;
+  views.isPoint = true;
   placePlanes(views, scene);
   for (const Face& face : kFaces) views.clipFromWorld.push_back(view(views, face.axis, face.up));
   return views;
 }
 
+namespace {
+
+bool isFarOutside(const PointLight& light, const Bounds& scene) {
+  return glm::length(light.position - scene.centre()) > 0.75 * glm::length(scene.extent());
+}
+
+/// Of the scene's bounding sphere.
+LightViews viewFromOutside(const PointLight& light, const Bounds& scene) {
+  LightViews views;
+  views.position = light.position;
+  views.intensity = light.intensity;
+  views.isPoint = true;
+  const glm::dvec3 towards = scene.centre() - light.position;
+  const double distance = glm::length(towards), radius = 0.5 * glm::length(scene.extent());
+  views.direction = towards / distance;
+  views.tangent = 1.02 * radius / std::sqrt((distance - radius) * (distance + radius));
+  views.near = 0.98 * (distance - radius);
+  views.far = 1.01 * (distance + radius);
+  const glm::dvec3 up = std::abs(views.direction.y) < 0.99 ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(1.0, 0.0, 0.0);
+  views.clipFromWorld = {view(views, views.direction, up)};
+  return views;
+}
+
+}  // namespace
+
 std::vector<LightViews> spotViews(const Scene& scene) {
   std::vector<LightViews> views;
+  for (std::size_t i = 0; i < scene.points.size(); ++i)
+    if (largest(scene.points[i].intensity) > 0.0f && isFarOutside(scene.points[i], scene.bounds)) {
+      views.push_back(viewFromOutside(scene.points[i], scene.bounds));
+      views.back().index = i;
+    }
   for (std::size_t i = 0; i < scene.spots.size(); ++i)
     if (largest(scene.spots[i].intensity) > 0.0f) {
       views.push_back(lightViews(scene.spots[i], scene.bounds));
@@ -87,7 +118,7 @@ std::vector<LightViews> spotViews(const Scene& scene) {
 std::vector<LightViews> pointViews(const Scene& scene) {
   std::vector<LightViews> views;
   for (std::size_t i = 0; i < scene.points.size(); ++i)
-    if (largest(scene.points[i].intensity) > 0.0f) {
+    if (largest(scene.points[i].intensity) > 0.0f && !isFarOutside(scene.points[i], scene.bounds)) {
       views.push_back(lightViews(scene.points[i], scene.bounds));
       views.back().index = i;
     }

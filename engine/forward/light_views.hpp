@@ -21,6 +21,7 @@ struct LightViews {
   double tangent = 1.0;  ///< of half the opening angle of each view
   double near = 0.0, far = 1.0;
   std::size_t index = 0;  ///< in the scene's list of lights of its kind
+  bool isPoint = false;  ///< an omnidirectional light, even if one view holds the scene
 
   /// The light's position in float, and a view's matrix for positions relative to it. Rounding then depends on the
   /// scene around the light, not on the light's position.
@@ -37,7 +38,9 @@ struct LightViews {
 LightViews lightViews(const SpotLight& light, const Bounds& scene);
 LightViews lightViews(const PointLight& light, const Bounds& scene);
 
-/// The views of a scene's spots and omnidirectional lights, only those with intensity > 0.
+/// The views of a scene's spots and omnidirectional lights, only those with intensity > 0. An omnidirectional light
+/// well outside of the scene is among the first: one view holds all of the scene, which would be few texels of a cube's
+/// face.
 std::vector<LightViews> spotViews(const Scene& scene);
 std::vector<LightViews> pointViews(const Scene& scene);
 

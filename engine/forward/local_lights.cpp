@@ -4,13 +4,15 @@
 #include "shared/bindings.h"
 #include "shared/lights.h"
 
+#include <algorithm>
+
 namespace lucerna {
 
-namespace {}  // namespace
-
 LocalLights::LocalLights(gl::ProgramLibrary& programs, const GpuScene& scene, const Settings& settings,
-                         const std::vector<LightViews>& spots, const std::vector<LightViews>& points) {
-  CHECK(spots.size() <= kMostSpots && points.size() <= kMostPoints, "{} spots, {} points", spots.size(), points.size());
+                         const std::vector<LightViews>& spots, const std::vector<LightViews>& points,
+                         const std::vector<LightViews>& plain) {
+  CHECK(std::max(spots.size(), points.size()) <= LIGHTS_MAX_SHADOWS, "{} spots, {} points", spots.size(),
+        points.size());
   shared::LightConstants constants{};
   for (std::size_t i = 0; i < spots.size(); ++i) {
     const LightViews& light = spots[i];
@@ -34,6 +36,12 @@ LocalLights::LocalLights(gl::ProgramLibrary& programs, const GpuScene& scene, co
                            glm::vec3(0.0f), static_cast<float>(light.far / span)};
   }
   constants_ = gl::Buffer("lights", sizeof constants, &constants, gl::Usage::staticDraw);
+  std::vector<shared::PlainLamp> lamps;
+  for (const LightViews& light : plain)
+    lamps.push_back({light.place(), static_cast<float>(light.cosInner), glm::vec3(light.direction),
+                     light.omnidirectional() ? -2.0f : static_cast<float>(light.cosOuter), light.intensity, 0.0f});
+  if (!lamps.empty())
+    plain_ = gl::Buffer("lamps without shadows", lamps.size() * sizeof lamps[0], lamps.data(), gl::Usage::staticDraw);
   const int spotLayers = static_cast<int>(spotViews_.size()), pointLayers = static_cast<int>(pointViews_.size());
   if (spotLayers > 0)
     spotShadows_.emplace(programs, scene, "spot shadows",
@@ -45,12 +53,13 @@ LocalLights::LocalLights(gl::ProgramLibrary& programs, const GpuScene& scene, co
 
 void LocalLights::bindForShading() const {
   constants_.bindUniform(BLOCK_LIGHTS);
+  if (hasPlainLamps()) plain_.bindStorage(PLAIN_LAMPS_BINDING);
   if (spotShadows_) spotShadows_->depth().bind(UNIT_SPOT_SHADOWS);
   if (pointShadows_) pointShadows_->depth().bind(UNIT_POINT_SHADOWS);
 }
 
 std::size_t LocalLights::gpuBytes() const {
-  return constants_.bytes() + (spotShadows_ ? spotShadows_->gpuBytes() : 0) +
+  return constants_.bytes() + plain_.bytes() + (spotShadows_ ? spotShadows_->gpuBytes() : 0) +
          (pointShadows_ ? pointShadows_->gpuBytes() : 0);
 }
 

@@ -13,23 +13,24 @@ namespace lucerna {
 
 class LocalLights {
  public:
-  /// Maximum number of lamps of each kind, the size of the shaders' arrays. A scene may have more: the frame keeps
-  /// those of which surfaces reflect most (rsm/lamp_choice.hpp) and names the others.
-  static constexpr std::size_t kMostSpots = LIGHTS_MAX_SPOTS, kMostPoints = LIGHTS_MAX_POINTS;
   struct Settings {
     int spotSize = 1024;  ///< texels per side of a spot's shadow map
     int pointSize = 512;  ///< texels per side of each of the six faces of an omnidirectional light's
+    int shadows = 4;  ///< lamps of a kind with a shadow map, at most: those of which surfaces reflect most
+                      ///< (rsm/lamp_choice.hpp); 0 to LIGHTS_MAX_SHADOWS
   };
   static bool isNeeded(const SceneFeatures& features) { return features.spotLights || features.pointLights; }
 
   LocalLights(gl::ProgramLibrary& programs, const GpuScene& scene, const Settings& settings,
-              const std::vector<LightViews>& spots, const std::vector<LightViews>& points);
+              const std::vector<LightViews>& spots, const std::vector<LightViews>& points,
+              const std::vector<LightViews>& plain);
 
   bool hasSpots() const { return spotShadows_.has_value(); }
   bool hasPoints() const { return pointShadows_.has_value(); }
+  bool hasPlainLamps() const { return plain_.bytes() > 0; }
   void recordSpots(const GpuScene& scene) const { spotShadows_->record(scene, spotViews_); }
   void recordPoints(const GpuScene& scene) const { pointShadows_->record(scene, pointViews_); }
-  /// Binds block 3 and units 10 (spots) and 11 (points) for shaders/forward/lights.glsl.
+  /// Binds blocks 3 and PLAIN_LAMPS_BINDING, and units 10 (spots) and 11 (points) for shaders/forward/lights.glsl.
   void bindForShading() const;
   std::size_t gpuBytes() const;
 
@@ -38,6 +39,7 @@ class LocalLights {
   std::optional<LayeredDepth> spotShadows_;  ///< a layer per spot
   std::optional<LayeredDepth> pointShadows_;  ///< six layers per light, a cube map
   gl::Buffer constants_;
+  gl::Buffer plain_;  ///< lamps without shadows, if any
 };
 
 }  // namespace lucerna

@@ -14,6 +14,16 @@ constexpr double kFilterTexels =
     4.0;  // border of two texels per side, so that the filter and the normal offset stay inside the map
 }
 
+int neededCascades(const Scene& scene, double texel) {
+  constexpr double kLeastTexels = 4.0;  // across a mesh
+  const bool isTooWide = std::ranges::any_of(scene.meshes, [&](const Mesh& mesh) {
+    const glm::dvec3 extent = mesh.bounds.extent();
+    const double across = std::max({extent.x, extent.y, extent.z});
+    return mesh.indexCount > 0 && across > 0.0 && across < kLeastTexels * texel;
+  });
+  return isTooWide ? SUN_MAX_CASCADES : 1;
+}
+
 std::vector<double> splitDistances(double near, double far, int cascades, double lambda) {
   CHECK(near > 0.0 && far > near && cascades >= 1, "near = {}, far = {}, cascades = {}", near, far, cascades);
   std::vector<double> distances{near};
@@ -37,8 +47,8 @@ std::vector<SunCascade> placeSunCascades(const SunCascadeSettings& settings, con
       std::max(diagonal * std::exp2(std::ceil(4.0 * std::log2(std::max(farthest / diagonal, 1.0))) / 4.0), 2.0 * near);
   const std::vector<double> splits = splitDistances(near, far, settings.cascades, settings.split);
 
-  // Squared tangent of the angle between the view's axis and its corners.
-  const double tangent = std::tan(0.5 * camera.verticalFov);
+  // Squared tangent of the angle between the view's axis and its corners; of an orthographic view, squared distance.
+  const double tangent = camera.halfHeight();
   const double corner2 = tangent * tangent * (1.0 + aspect * aspect);
   // The same axes as the whole scene's frustum; z from `whole`, which is orthographic: clip z depends on depth alone.
   const glm::dvec3 up = std::abs(sunDirection.y) < 0.99 ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(1.0, 0.0, 0.0);
@@ -49,9 +59,10 @@ std::vector<SunCascade> placeSunCascades(const SunCascadeSettings& settings, con
   for (int i = 0; i < settings.cascades; ++i) {
     const double a = splits[static_cast<std::size_t>(i)], b = splits[static_cast<std::size_t>(i) + 1];
     // The smallest sphere through the slice's corners with its centre on the axis; not beyond the far plane.
-    const double along = std::min(0.5 * (a + b) * (1.0 + corner2), b);
-    const double radius =
-        std::max(std::hypot(b - along, b * std::sqrt(corner2)), std::hypot(along - a, a * std::sqrt(corner2)));
+    const double along = camera.isOrthographic() ? 0.5 * (a + b) : std::min(0.5 * (a + b) * (1.0 + corner2), b);
+    const double toCorner = std::sqrt(corner2), nearCorner = camera.isOrthographic() ? toCorner : a * toCorner,
+                 farCorner = camera.isOrthographic() ? toCorner : b * toCorner;
+    const double radius = std::max(std::hypot(b - along, farCorner), std::hypot(along - a, nearCorner));
     SunCascade cascade;
     cascade.texel = 2.0 * radius / std::max(mapSize - kFilterTexels, 1.0);
     if (cascade.texel >= wholeTexel) {

@@ -19,10 +19,15 @@
 namespace lucerna {
 
 struct SunCascadeSettings {
-  int cascades = 1;  ///< 1: one map for the whole scene, no cascades at all; at most SUN_MAX_CASCADES
+  static constexpr int kAuto = 0;
+  int cascades = kAuto;  ///< 1: one map for the whole scene, no cascades at all; at most SUN_MAX_CASCADES, which is
+                         ///< also what kAuto means where one map's texels are too wide for the scene's smallest meshes
   double split = 0.9;  ///< lambda: 0 uniform, 1 logarithmic. Near planes lie at 1/2000 of the scene, so 0.5 would be
                        ///< nearly uniform
 };
+
+/// The number of cascades that kAuto stands for. texel: side of a texel of a map of the whole scene, scene units.
+int neededCascades(const Scene& scene, double texel);
 
 /// The split distances along the view axis, cascades + 1 of them, from near to far exactly. 0 < near < far.
 std::vector<double> splitDistances(double near, double far, int cascades, double lambda);

@@ -5,6 +5,7 @@
 #include "gl/pass.hpp"
 #include "gl/chunks.hpp"
 #include "rays/light_table.hpp"
+#include "rays/view_rays.hpp"
 #include "shared/bindings.h"
 #include "shared/irradiance_cache.h"
 
@@ -135,10 +136,10 @@ gl::ShaderFlags IrradianceCache::lookupFlags(const IrradianceCacheSettings& sett
   return {{"GRID_FULL_FLOAT", settings.fullFloat}};
 }
 
-gl::ShaderFlags IrradianceCache::rayFlags(int lanes) const {
+gl::ShaderFlags IrradianceCache::rayFlags(int lanes, bool glossy) const {
   return gl::with(
       gl::with(lookupFlags(settings_), scene_.flags()),
-      {{"LINEAR_SEEDS", 0}, {"GLOSSY", 0}, {"SHARED_STACK", scene_.rays().sharedStack()}, {"PATHS", lanes}});
+      {{"LINEAR_SEEDS", 0}, {"GLOSSY", glossy}, {"SHARED_STACK", scene_.rays().sharedStack()}, {"PATHS", lanes}});
 }
 
 void IrradianceCache::forget() {
@@ -173,14 +174,7 @@ void IrradianceCache::place(const Inputs& inputs) {
   constants.markEvery = static_cast<std::uint32_t>(pixels / (kKeyPixels - constants.prefetch) + 1);
   constants_.upload(0, sizeof constants, &constants);
 
-  const Camera& camera = inputs.camera;
-  const glm::dvec3 right = glm::normalize(glm::cross(camera.direction, camera.up)),
-                   up = glm::cross(right, camera.direction);
-  const double pixel = 2.0 * std::tan(0.5 * camera.verticalFov) / size.y;
-  path_.cameraPosition = glm::vec3(camera.position - rayOrigin_);
-  path_.pixelRight = glm::vec3(pixel * right);
-  path_.pixelUp = glm::vec3(pixel * up);
-  path_.firstPixel = glm::vec3(camera.direction - 0.5 * size.x * pixel * right - 0.5 * size.y * pixel * up);
+  setView(path_, inputs.camera, rayOrigin_, size);
   path_.picture = glm::ivec4(size, 0, 0);
   pathConstants_.upload(0, sizeof path_, &path_);
 }
@@ -348,6 +342,12 @@ void IrradianceCache::bindForLookup() const {
   cascadeConstants_.bindUniform(BLOCK_CASCADES);
   constants_.bindUniform(BLOCK_CACHE);
   irradiance_.bind(UNIT_CACHE);
+}
+
+void IrradianceCache::bindForRays() const {
+  bindForLookup();
+  pathConstants_.bindUniform(BLOCK_CACHE_PATHS);
+  scene_.bind();
 }
 
 std::vector<InspectedPart> IrradianceCache::inspect(const glm::vec3& position, const glm::vec3& normal) const {

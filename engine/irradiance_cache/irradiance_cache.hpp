@@ -69,6 +69,9 @@ class IrradianceCache {
   /// Binds blocks 1 and 6 and unit 5 for shaders/irradiance_cache/lookup.glsl.
   void bindForLookup() const;
   static gl::ShaderFlags lookupFlags(const IrradianceCacheSettings& settings);
+  /// For programs that trace rays among the surfaces and look up records: their flags, and what they read.
+  gl::ShaderFlags rayFlags(int lanes = 1, bool glossy = false) const;
+  void bindForRays() const;
 
   /// The contribution of each record to the lookup at a point in the frame's coordinates, with the mesh's normal.
   /// Compiles and allocates.
@@ -121,7 +124,6 @@ class IrradianceCache {
   void gather(const Inputs& inputs);
   void store(float mostChange);
   void bindRecords() const;
-  gl::ShaderFlags rayFlags(int lanes) const;
   /// Dispatches a program over the listed records, part after part.
   static void dispatchListed(const gl::ComputePass& pass, const gl::Program& program, const gl::Buffer& work);
   Image atPixels(int rounds, const std::function<void(const gl::Buffer& work)>& light) const;

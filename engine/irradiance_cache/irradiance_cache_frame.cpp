@@ -5,6 +5,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <limits>
+
 namespace lucerna {
 
 namespace {
@@ -14,6 +17,21 @@ IrradianceCache::Light cachedLight(Component component) {
   return component == Component::direct     ? Light::direct
          : component == Component::indirect ? Light::indirect
                                             : Light::all;
+}
+
+/// Half floats hold a light only beside one up to 1e4 times as strong.
+IrradianceCacheSettings cacheSettings(const FrameParts& parts) {
+  constexpr float kMostRatio = 1e4f;
+  IrradianceCacheSettings settings = parts.settings.of<IrradianceCacheSettings>();
+  float least = std::numeric_limits<float>::infinity(), most = 0.0f;
+  const auto add = [&](const glm::vec3& light) {
+    const float strength = std::max({light.x, light.y, light.z});
+    if (strength > 0.0f) least = std::min(least, strength), most = std::max(most, strength);
+  };
+  for (const SpotLight& lamp : parts.scene.spots) add(lamp.intensity);
+  for (const PointLight& lamp : parts.scene.points) add(lamp.intensity);
+  settings.fullFloat = settings.fullFloat || most / kMostRatio > least;
+  return settings;
 }
 
 std::optional<LightMaps> lightMaps(const FrameParts& parts) {
@@ -31,11 +49,17 @@ IrradianceCacheFrame::IrradianceCacheFrame(const FrameParts& parts)
     : parts_(parts),
       maps_(lightMaps(parts)),
       visible_(parts.programs, parts.drawn(), parts.depth),
-      cache_(parts.programs, parts.context.capabilities(), parts.scene, parts.origin, settings(),
-             cachedLight(parts.settings.component)) {}
+      cache_(parts.programs, parts.context.capabilities(), parts.scene, parts.origin, cacheSettings(parts),
+             cachedLight(parts.settings.component)) {
+  if (!Reflections::isNeeded(parts.features, settings().reflections)) return;
+  reflections_.emplace(parts.programs, parts.scene, cache_.rayFlags(1, true), settings().reflections,
+                       parts.settings.unmeasuredIterations);
+  reflections_->resize(visible_.size());
+}
 
 void IrradianceCacheFrame::resize() {
   visible_.resize(parts_.depth);
+  if (reflections_) reflections_->resize(visible_.size());
   clip_ = glm::dmat4(0.0);  // other pixels of the same view see other points
 }
 
@@ -67,6 +91,7 @@ bool IrradianceCacheFrame::record(gl::TimeQuery& timer, const FrameView& view, F
   cache_.update({placeCascadesAround(cache.cascades, parts_.drawn().scene().bounds, volume, size.x / size.y),
                  view.camera, glm::mat4(glm::inverse(view.clip)), visible_, maps, mapsAreNew, effort.fadesIn},
                 rounds);
+  if (reflections_) reflections_->record([&] { cache_.bindForRays(); });
   return true;
 }
 
@@ -112,6 +137,7 @@ void IrradianceCacheFrame::addStagePictures(std::vector<StagePicture>& pictures)
 }
 
 void IrradianceCacheFrame::addLeftOut(std::vector<std::string>& names) const {
+  if (!reflections_) names.emplace_back("reflections");
   if (!hasMaps()) names.emplace_back("reflective shadow map");
 }
 

@@ -7,8 +7,10 @@
 #include "forward/visible_surfaces.hpp"
 #include "frame/technique.hpp"
 #include "irradiance_cache/irradiance_cache.hpp"
+#include "irradiance_cache/reflections.hpp"
 #include "rsm/light_maps.hpp"
 
+#include <algorithm>
 #include <optional>
 
 namespace lucerna {
@@ -24,11 +26,16 @@ class IrradianceCacheFrame final : public FrameTechnique {
   explicit IrradianceCacheFrame(const FrameParts& parts);
 
   std::string surfaceShader() const override { return "irradiance_cache/surface.frag"; }
-  gl::ShaderFlags surfaceFlags() const override { return IrradianceCache::lookupFlags(settings()); }
+  gl::ShaderFlags surfaceFlags() const override {
+    return gl::with(IrradianceCache::lookupFlags(cache_.settings()), {{"INDIRECT_SPECULAR", reflections_.has_value()}});
+  }
   void resize() override;
   /// Draws depth, unless no work is left for this view.
   bool record(gl::TimeQuery& timer, const FrameView& view, FrameEffort effort) override;
-  void bindForShading() const override { cache_.bindForLookup(); }
+  void bindForShading() const override {
+    cache_.bindForLookup();
+    if (reflections_) reflections_->bindForShading();
+  }
   void collect(bool wait) override { cache_.collect(wait); }
   bool isSettled() const override { return settled_; }
   bool lacksLight(std::size_t frames) const override;
@@ -37,10 +44,13 @@ class IrradianceCacheFrame final : public FrameTechnique {
   void addShares(const InspectedPixel& pixel, PixelInspection& answer) override;
   void addStagePictures(std::vector<StagePicture>& pictures) const override;
   void addLeftOut(std::vector<std::string>& names) const override;
-  double largestIterations() const override { return cache_.mostIterations(); }
+  double largestIterations() const override {
+    return std::max(cache_.mostIterations(), reflections_ ? reflections_->largestIterations() : 0.0);
+  }
   double iterationsOfPixel() const override { return 24.0; }
   std::size_t gpuBytes() const override {
-    return (maps_ ? maps_->gpuBytes() : 0) + visible_.gpuBytes() + cache_.gpuBytes();
+    return (maps_ ? maps_->gpuBytes() : 0) + visible_.gpuBytes() + cache_.gpuBytes() +
+           (reflections_ ? reflections_->gpuBytes() : 0);
   }
 
   const IrradianceCache& cache() const { return cache_; }
@@ -59,6 +69,7 @@ class IrradianceCacheFrame final : public FrameTechnique {
   std::optional<LightMaps> maps_;  ///< if they use maps
   VisibleSurfaces visible_;
   IrradianceCache cache_;
+  std::optional<Reflections> reflections_;  ///< if something reflects
   /// The view for which they were last updated, the frame of its first update, and whether no work is left.
   glm::dmat4 clip_{0.0};
   glm::dvec3 volumePosition_{0.0}, volumeDirection_{0.0};

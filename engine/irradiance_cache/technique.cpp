@@ -41,6 +41,8 @@ std::span<const Setting> cacheSettings() {
        "of a record while light and geometry are static", "", rebuild, "cache.transport=rays"},
       {"cache.prefetch", number(SETTING_FIELD(IrradianceCacheSettings, prefetch), 0, 1 << 16), "directions",
        "around the camera, in which surfaces get records before they come into view, while it moves"},
+      {"cache.reflections", number(SETTING_FIELD(IrradianceCacheSettings, reflections), 0, 1024), "rays",
+       "per pixel of a coat, a mirror or glass, that find what it reflects; 0: lamps alone"},
       {"cache.most-change", number(SETTING_FIELD(IrradianceCacheSettings, mostChange), 0.0, 1.0), "",
        "largest relative change of a record's shown irradiance per frame; 0: no limit"},
   };

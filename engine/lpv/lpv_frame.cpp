@@ -44,7 +44,24 @@ bool LpvFrame::needsVolume(const RenderSettings& settings, const SceneFeatures& 
   return settings.component != Component::direct && LightPropagationVolume::isNeeded(features);
 }
 
+namespace {
+
+/// The published grid lies before the camera, with cells of a fixed size. Where the first view is outside of the scene
+/// they are as wide as it takes to reach the scene's far end.
+void reachScene(CascadeSettings& cascades, const Scene& scene) {
+  if (cascades.heldInScene || cascades.cellSize > 0.0 || scene.bounds.empty() || scene.cameras.empty()) return;
+  const glm::dvec3 eye = scene.cameras.front().position, nearest = glm::clamp(eye, scene.bounds.min, scene.bounds.max);
+  if (eye == nearest) return;
+  const glm::dvec3 extent = scene.bounds.extent();
+  const double farthest = glm::length(eye - nearest) + glm::length(extent);
+  const double scenes = cascades.spanOfScene * std::max({extent.x, extent.y, extent.z}) / cascades.cells;
+  cascades.cellSize = std::max(scenes, 2.0 * farthest / (cascades.cells * (1.0 + cascades.push)));
+}
+
+}  // namespace
+
 void LpvFrame::prepare(RenderSettings& settings, const Scene& scene) {
+  reachScene(settings.of<LpvSettings>().cascades, scene);
   if (!settings.of<LpvSettings>().shafts) return;
   const bool hasHaze = hazeOf(scene).has_value();
   if (!hasHaze)
@@ -85,7 +102,12 @@ std::vector<ReflectiveShadowMap::Outputs> LpvFrame::recordCameraMap(gl::TimeQuer
   SpotLight eye;
   eye.position = camera.position;
   eye.direction = camera.direction;
-  eye.outerAngle = std::min(std::atan(std::tan(0.5 * camera.verticalFov) * std::max(aspect, 1.0)), kLargestSpotAngle);
+  const double toEdge = camera.halfHeight() * std::max(aspect, 1.0);
+  eye.outerAngle = std::min(std::atan(toEdge), kLargestSpotAngle);
+  if (camera.isOrthographic()) {  // a cone that holds the view from its plane on
+    eye.outerAngle = std::atan(1.0);
+    eye.position -= toEdge * camera.direction;
+  }
   eye.innerAngle = 0.0;
   return {cameraMap_->record(parts_.drawn(), lightViews(eye, parts_.drawn().scene().bounds))};
 }

@@ -61,13 +61,20 @@ FilmStatistics statisticsOf(std::span<const FilmPixel> pixels) {
   const double count = static_cast<double>(pixels.size());
   FilmStatistics result;
   result.fewestSamples = std::numeric_limits<std::uint32_t>::max();
-  glm::dvec3 variances(0.0);
+  glm::dvec3 variances(0.0), lit(0.0);
+  double unlitWeight = 0.0, litPixels = 0.0;
   for (const FilmPixel& pixel : pixels) {
     result.fewestSamples = std::min(result.fewestSamples, pixel.samples);
     result.mostSamples = std::max(result.mostSamples, pixel.samples);
     result.samples += pixel.samples / count;
     result.mean += glm::dvec3(pixel.mean) / count;
     variances += meanVariance(pixel);
+    if (pixel.mean != glm::vec3(0.0f)) {
+      lit += glm::dvec3(pixel.mean);
+      ++litPixels;
+    } else if (pixel.samples > 0) {
+      unlitWeight += 3.0 / (static_cast<double>(pixel.samples) * pixel.samples);
+    }
   }
   result.meanError = glm::sqrt(variances) / count;
   if (result.fewestSamples < 2) {
@@ -75,9 +82,13 @@ FilmStatistics statisticsOf(std::span<const FilmPixel> pixels) {
     result.meanError = glm::dvec3(result.standardError);
     return result;
   }
+  // Where n samples found nothing, up to 3 in n may find light (with 95 %, the rule of three [HanleyLippmanHand1983]),
+  // as much as lit pixels have.
+  if (litPixels > 0.0) variances += lit * lit * (unlitWeight / (litPixels * litPixels));
   result.standardError = std::sqrt((variances.x + variances.y + variances.z) / (3.0 * count));
   const double mean = (result.mean.x + result.mean.y + result.mean.z) / 3.0;
-  result.relativeError = result.standardError > 0.0 ? result.standardError / mean : 0.0;
+  // Nothing found at all says nothing about the error.
+  result.relativeError = mean > 0.0 ? result.standardError / mean : std::numeric_limits<double>::infinity();
   return result;
 }
 

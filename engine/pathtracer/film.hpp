@@ -28,8 +28,9 @@ struct FilmStatistics {
   double samples = 0.0;  ///< mean over pixels
   glm::dvec3 mean{0.0}, meanError{0.0};
   double standardError =
-      0.0;  ///< root mean square over pixels and channels of a pixel's standard error; infinite below 2 samples
-  double relativeError = 0.0;  ///< that over the mean, channels averaged; 0 for a black picture without error
+      0.0;  ///< root mean square over pixels and channels of a pixel's standard error; infinite below 2 samples. A
+            ///< pixel that found nothing counts by the rule of three
+  double relativeError = 0.0;  ///< that over the mean, channels averaged; infinite for a black picture
 };
 FilmStatistics statisticsOf(std::span<const FilmPixel> pixels);
 /// Standard error of a pixel's mean; 0 below 2 samples.

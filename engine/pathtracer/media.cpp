@@ -72,6 +72,105 @@ shared::DensityRecord packGrid(const Medium& medium, const glm::dvec3& origin, s
   return record;
 }
 
+double solidAngleOf(const BoundaryTriangle& triangle, const glm::dvec3& point) {
+  const glm::dvec3 a = glm::dvec3(triangle.a) - point, b = glm::dvec3(triangle.b) - point,
+                   c = glm::dvec3(triangle.c) - point;
+  const double ra = glm::length(a), rb = glm::length(b), rc = glm::length(c);
+  const double volume = glm::dot(a, glm::cross(b, c)),
+               rest = ra * rb * rc + glm::dot(a, b) * rc + glm::dot(b, c) * ra + glm::dot(c, a) * rb;
+  return volume != 0.0 || rest != 0.0 ? 2.0 * std::atan2(volume, rest) : 0.0;
+}
+
+/// How a closed boundary lies to another one.
+enum class Lies { apart, within, across };
+
+/// Points of `inner`, a little inside of it, against the winding number of `outer`.
+Lies liesIn(const std::vector<BoundaryTriangle>& inner, const std::vector<BoundaryTriangle>& outer) {
+  constexpr double kMostTerms = 2e7;
+  constexpr int kSteps = 4;  // of a triangle's edges
+  Bounds innerBounds, outerBounds;
+  for (const auto& t : inner)
+    for (const glm::vec3* p : {&t.a, &t.b, &t.c}) innerBounds.add(glm::dvec3(*p));
+  for (const auto& t : outer)
+    for (const glm::vec3* p : {&t.a, &t.b, &t.c}) outerBounds.add(glm::dvec3(*p));
+  if (!overlap(innerBounds, outerBounds)) return Lies::apart;
+  const double depth = 1e-4 * std::min(glm::length(innerBounds.extent()), glm::length(outerBounds.extent()));
+  const auto tested = static_cast<std::size_t>(kMostTerms / (15.0 * static_cast<double>(outer.size())));
+  const std::size_t stride = std::max<std::size_t>(inner.size() / std::max<std::size_t>(tested, 1), 1);
+  Lies lies = Lies::apart;
+  for (std::size_t i = 0; i < inner.size(); i += stride) {
+    const glm::dvec3 a(inner[i].a), ab = glm::dvec3(inner[i].b) - a, ac = glm::dvec3(inner[i].c) - a,
+                     normal = glm::cross(ab, ac);
+    if (!(glm::length(normal) > 0.0)) continue;
+    int inside = 0, all = 0;
+    for (int u = 0; u <= kSteps; ++u)
+      for (int v = 0; u + v <= kSteps; ++v) {
+        const glm::dvec3 middle = (ab + ac) / 3.0, at = (double(u) * ab + double(v) * ac) / double{kSteps},
+                         point = a + middle + 0.99 * (at - middle) - depth * glm::normalize(normal);
+        double angle = 0.0;
+        for (const BoundaryTriangle& t : outer) angle += solidAngleOf(t, point);
+        inside += angle > 2.0 * std::numbers::pi;
+        ++all;
+      }
+    if (inside > 0 && inside < all) return Lies::across;
+    if (inside == all) lies = Lies::within;
+  }
+  return lies;
+}
+
+/// A dielectric or a medium's boundary, of all materials that are the same one.
+struct Shell {
+  std::tuple<int, bool, float, int> key;  ///< priority, dielectric, index, medium
+  std::string material;
+  std::vector<BoundaryTriangle> triangles;
+};
+
+/// Orders boundaries of the same priority: what lies within another one comes after it. Where two cross, the dielectric
+/// comes after a medium alone, and the higher index after the lower one; media alone have no such order.
+void orderByNesting(std::vector<Shell>& shells, const std::string& scene) {
+  const std::size_t n = shells.size();
+  std::vector<std::vector<bool>> holds(n, std::vector<bool>(n, false));
+  const auto fail = [&](std::size_t i, std::size_t k) {
+    throwBadInput(
+        "{}: the boundaries of materials {} and {} cross, and both have priority {}: give one a higher \"priority\", "
+        "and its medium applies where they overlap",
+        scene, shells[i].material, shells[k].material, std::get<0>(shells[i].key));
+  };
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t k = i + 1; k < n; ++k) {
+      if (std::get<0>(shells[i].key) != std::get<0>(shells[k].key)) continue;
+      const Lies within = liesIn(shells[k].triangles, shells[i].triangles),
+                 around = liesIn(shells[i].triangles, shells[k].triangles);
+      const bool cross =
+          within == Lies::across || around == Lies::across || (within == Lies::within && around == Lies::within);
+      const auto& [priorityI, dielectricI, iorI, mediumI] = shells[i].key;
+      const auto& [priorityK, dielectricK, iorK, mediumK] = shells[k].key;
+      if (cross && dielectricI == dielectricK && iorI == iorK) fail(i, k);
+      if (cross) holds[i][k] = true;
+      else if (within == Lies::within) holds[i][k] = true;
+      else if (around == Lies::within) holds[k][i] = true;
+    }
+  std::vector<Shell> ordered;
+  std::vector<bool> placed(n, false);
+  while (ordered.size() < n) {
+    std::size_t next = n;
+    for (std::size_t i = 0; i < n && next == n; ++i) {
+      bool free = !placed[i];
+      for (std::size_t k = 0; k < n; ++k) free = free && (placed[k] || !holds[k][i]);
+      if (free) next = i;
+    }
+    if (next == n) {  // a circle of boundaries, each within the next
+      std::vector<std::size_t> left;
+      for (std::size_t i = 0; i < n; ++i)
+        if (!placed[i]) left.push_back(i);
+      fail(left[0], left[1]);
+    }
+    placed[next] = true;
+    ordered.push_back(std::move(shells[next]));
+  }
+  shells = std::move(ordered);
+}
+
 }  // namespace
 
 PackedMedia packMedia(const std::vector<Medium>& media, const glm::dvec3& origin) {
@@ -129,42 +228,50 @@ PackedBoundaries rankBoundaries(const Scene& scene, bool diffuseOnly) {
     const bool dielectric = m.bsdf == Bsdf::dielectric;
     return Key{m.priority, dielectric, dielectric ? m.ior : 1.0f, m.interior};
   };
-  std::vector<Key> keys;
+  std::vector<Shell> shells;
   for (const Material& material : scene.materials) {
     if (!bounds(material)) continue;
     if (!(std::isfinite(material.ior) && material.ior > 0.0f))
       throwBadInput("material {}: an index of refraction must be above 0, and is {}", material.name, material.ior);
     if (material.interior < -1 || material.interior >= static_cast<int>(scene.media.size()))
       throwBadInput("material {}: no such medium: {}", material.name, material.interior);
-    keys.push_back(keyOf(material));
+    const Key key = keyOf(material);
+    if (std::none_of(shells.begin(), shells.end(), [&](const Shell& s) { return s.key == key; }))
+      shells.push_back({key, material.name, {}});
   }
-  std::sort(keys.begin(), keys.end());
-  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
-  if (keys.size() > static_cast<std::size_t>(kMaxBoundaryRanks))
+  std::sort(shells.begin(), shells.end(), [](const Shell& a, const Shell& b) { return a.key < b.key; });
+  if (shells.size() > static_cast<std::size_t>(kMaxBoundaryRanks))
     throwBadInput("{}: {} different dielectrics and boundaries of media, at most {} are supported", scene.name,
-                  keys.size(), kMaxBoundaryRanks);
+                  shells.size(), kMaxBoundaryRanks);
+  const auto shellOf = [&](const Material& material) {
+    return std::find_if(shells.begin(), shells.end(), [&](const Shell& s) { return s.key == keyOf(material); });
+  };
+  for (const Mesh& mesh : scene.meshes) {
+    const Material& material = scene.materials[static_cast<std::size_t>(mesh.material)];
+    if (!bounds(material)) continue;
+    const auto corner = [&](std::uint32_t i) { return scene.vertices[scene.indices[i]].position; };
+    for (std::uint32_t i = mesh.firstIndex; i + 2 < mesh.firstIndex + mesh.indexCount; i += 3)
+      shellOf(material)->triangles.push_back({corner(i), corner(i + 1), corner(i + 2), 0});
+  }
+  orderByNesting(shells, scene.name);
 
   PackedBoundaries packed;
-  for (std::size_t rank = 0; rank < keys.size(); ++rank) {
-    const auto& [priority, dielectric, ior, medium] = keys[rank];
+  for (std::size_t rank = 0; rank < shells.size(); ++rank) {
+    const auto& [priority, dielectric, ior, medium] = shells[rank].key;
     shared::InteriorRecord interior{};
     interior.ior = ior;
     interior.medium = medium;
     interior.clearance = -1;
     packed.interiors.push_back(interior);
     if (dielectric) packed.dielectricRanks[static_cast<int>(rank / 8)] |= 15u << (4 * (rank % 8));
+    for (BoundaryTriangle& triangle : shells[rank].triangles) {
+      triangle.rank = static_cast<int>(rank);
+      packed.triangles.push_back(triangle);
+    }
   }
   for (const Material& material : scene.materials)
     packed.rankOfMaterial.push_back(
-        bounds(material) ? static_cast<int>(std::lower_bound(keys.begin(), keys.end(), keyOf(material)) - keys.begin())
-                         : -1);
-  for (const Mesh& mesh : scene.meshes) {
-    const int rank = packed.rankOfMaterial[static_cast<std::size_t>(mesh.material)];
-    if (rank < 0) continue;
-    const auto corner = [&](std::uint32_t i) { return scene.vertices[scene.indices[i]].position; };
-    for (std::uint32_t i = mesh.firstIndex; i + 2 < mesh.firstIndex + mesh.indexCount; i += 3)
-      packed.triangles.push_back({corner(i), corner(i + 1), corner(i + 2), rank});
-  }
+        bounds(material) ? static_cast<int>(shellOf(material) - shells.begin()) : -1);
   return packed;
 }
 
@@ -193,15 +300,8 @@ bool boundariesMayTouch(const Scene& scene, const PackedBoundaries& boundaries) 
 
 Surroundings surroundingsOf(const PackedBoundaries& boundaries, const glm::dvec3& point) {
   std::array<double, kMaxBoundaryRanks> solidAngle{};
-  for (const BoundaryTriangle& triangle : boundaries.triangles) {
-    const glm::dvec3 a = glm::dvec3(triangle.a) - point, b = glm::dvec3(triangle.b) - point,
-                     c = glm::dvec3(triangle.c) - point;
-    const double ra = glm::length(a), rb = glm::length(b), rc = glm::length(c);
-    const double volume = glm::dot(a, glm::cross(b, c)),
-                 rest = ra * rb * rc + glm::dot(a, b) * rc + glm::dot(b, c) * ra + glm::dot(c, a) * rb;
-    if (volume != 0.0 || rest != 0.0)
-      solidAngle[static_cast<std::size_t>(triangle.rank)] += 2.0 * std::atan2(volume, rest);
-  }
+  for (const BoundaryTriangle& triangle : boundaries.triangles)
+    solidAngle[static_cast<std::size_t>(triangle.rank)] += solidAngleOf(triangle, point);
   Surroundings result;
   for (std::size_t rank = 0; rank < boundaries.interiors.size(); ++rank) {
     const double winding = solidAngle[rank] / (4.0 * std::numbers::pi);

@@ -6,6 +6,7 @@
 #include "gl/pass.hpp"
 #include "pathtracer/clearance.hpp"
 #include "pathtracer/film.hpp"
+#include "rays/view_rays.hpp"
 
 #include <algorithm>
 #include <array>
@@ -239,14 +240,7 @@ void PathTracer::addClearances(const Scene& scene) {
 }
 
 void PathTracer::setCamera(const Camera& camera) {
-  const glm::dvec3 right = glm::normalize(glm::cross(camera.direction, camera.up)),
-                   up = glm::cross(right, camera.direction);
-  const double pixel = 2.0 * std::tan(0.5 * camera.verticalFov) / settings_.size.y;
-  constants_.cameraPosition = glm::vec3(camera.position - scene_->origin());
-  constants_.pixelRight = glm::vec3(pixel * right);
-  constants_.pixelUp = glm::vec3(pixel * up);
-  constants_.firstPixel =
-      glm::vec3(camera.direction - 0.5 * settings_.size.x * pixel * right - 0.5 * settings_.size.y * pixel * up);
+  setView(constants_, camera, scene_->origin(), settings_.size);
   if (hasInteriors()) {
     const Surroundings surroundings = surroundingsOf(boundaries_, camera.position);
     // Reported when paths start there: another camera may be set first.

@@ -74,7 +74,7 @@ class PathTracer {
                               ///< what time is spent on, whatever the clock
     double collisions = 0.0;  ///< in media, likewise
     double relativeError =
-        0.0;  ///< standardError over the picture's mean, channels averaged; 0 for a black picture without error
+        0.0;  ///< standardError over the picture's mean, channels averaged; infinite for a black picture
   };
 
   /// Compiles and allocates. Throws Error(missingCapability) if the scene exceeds the driver's limits.

@@ -67,6 +67,15 @@ bool hasArea(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
   return std::isfinite(sum) && sum > 0.0;
 }
 
+// The plane of the corners as they are kept, from doubles: in a sliver floats would turn it.
+void addPlane(BvhTriangle& t) {
+  const glm::dvec3 n = glm::cross(glm::dvec3(t.b) - glm::dvec3(t.a), glm::dvec3(t.c) - glm::dvec3(t.a)), size = abs(n);
+  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  t.id |= static_cast<std::uint32_t>(axis) << BVH_TRIANGLE_AXIS_SHIFT;
+  t.normal1 = static_cast<float>(n[(axis + 1) % 3] / n[axis]);
+  t.normal2 = static_cast<float>(n[(axis + 2) % 3] / n[axis]);
+}
+
 // The triangles that rays can hit, in the space of the hierarchy, in the order of the scene.
 struct Triangles {
   std::vector<BvhTriangle> kept;
@@ -76,17 +85,20 @@ struct Triangles {
 
 Triangles collect(const Scene& scene) {
   Triangles result;
-  std::vector<bool> masked(scene.triangleCount(), false);
-  for (const Mesh& mesh : scene.meshes)
-    if (scene.materials[static_cast<std::size_t>(mesh.material)].alphaMasked)
-      std::fill_n(masked.begin() + mesh.firstIndex / 3, mesh.indexCount / 3, true);
+  std::vector<std::uint32_t> flags(scene.triangleCount(), 0u);
+  for (const Mesh& mesh : scene.meshes) {
+    const Material& material = scene.materials[static_cast<std::size_t>(mesh.material)];
+    std::fill_n(flags.begin() + mesh.firstIndex / 3, mesh.indexCount / 3,
+                (material.alphaMasked ? BVH_TRIANGLE_MASKED : 0u) |
+                    (material.emission != decltype(material.emission)(0.0f) ? BVH_TRIANGLE_EMISSIVE : 0u));
+  }
   Box bounds;
   for (std::size_t t = 0; t < scene.triangleCount(); ++t) {
     BvhTriangle triangle{};
     const auto corner = [&](std::size_t k) { return scene.vertices[scene.indices[3 * t + k]].position; };
     triangle.a = corner(0), triangle.b = corner(1), triangle.c = corner(2);
     if (!hasArea(triangle.a, triangle.b, triangle.c)) continue;
-    triangle.id = static_cast<std::uint32_t>(t) | (masked[t] ? BVH_TRIANGLE_MASKED : 0u);
+    triangle.id = static_cast<std::uint32_t>(t) | flags[t];
     bounds.add(boxOf(triangle));
     result.kept.push_back(triangle);
   }
@@ -96,6 +108,7 @@ Triangles collect(const Scene& scene) {
       *corner = glm::vec3(glm::dvec3(*corner) - result.origin);
       for (int k = 0; k < 3; ++k) result.magnitude = std::max(result.magnitude, std::abs((*corner)[k]));
     }
+  for (BvhTriangle& triangle : result.kept) addPlane(triangle);
   return result;
 }
 

@@ -45,17 +45,17 @@ PathScene::PathScene(const Scene& scene, const SceneFeatures& features, const gl
     to.specular = from.specular;
     to.roughness = from.roughness < kSmoothest ? 0.0f : std::min(from.roughness, 1.0f);
     to.mapRoughness = from.metalMap ? from.metalMap->roughness : -1.0f;
-    if (settings.diffuseOnly && to.kind != PATH_NONE) {
-      if (to.kind == PATH_MIRROR || to.kind == PATH_CONDUCTOR) to.albedo = glm::vec3(0.0f);
-      if (to.kind == PATH_DIELECTRIC) to.specular = glm::vec3(0.0f);
-      to.kind = PATH_DIFFUSE;
-    }
     const bool isCoated = to.specular != glm::vec3(0.0f) || to.mapRoughness >= 0.0f;
     if (to.kind == PATH_DIFFUSE && isCoated) {
-      if (!settings.diffuseOnly) to.kind = PATH_COATED;
+      to.kind = PATH_COATED;
       to.roughness = std::max(to.roughness, static_cast<float>(COAT_LEAST_ALPHA));
       hasCoats_ = true;
     }
+    if (settings.diffuseOnly && (to.kind == PATH_MIRROR || to.kind == PATH_CONDUCTOR)) {
+      to.albedo = glm::vec3(0.0f);
+      hasCoats_ = true;
+    }
+    if (to.kind == PATH_DIELECTRIC) to.specular = glm::vec3(0.0f);
     to.emission = from.emissionTexture >= 0 ? from.emissionScale : from.emission;
     to.ior = from.ior;
     to.boundary = static_cast<std::uint32_t>(rankOfMaterial.empty() ? -1 : rankOfMaterial[i]);

@@ -67,13 +67,17 @@ void Renderer::addDirectShares(const InspectedTerms& terms, PixelInspection& ans
   const double reach = glm::length(scene.bounds.extent());
   if (scene.sun)
     answer.add("direct", "sun", glm::dvec3(terms[INSPECTED_SUN]), {position, position - reach * scene.sun->direction});
-  const auto lamps = [&](const char* kind, const std::vector<LightViews>& lights, std::size_t first) {
+  const auto lamps = [&](const std::vector<LightViews>& lights, std::size_t first) {
     for (std::size_t i = 0; i < lights.size() && localLights_; ++i)
-      answer.add("direct", fmt::format("{} {}", kind, lights[i].index + 1), glm::dvec3(terms[first + i]),
+      answer.add("direct", fmt::format("{} {}", lights[i].isPoint ? "point" : "spot", lights[i].index + 1),
+                 glm::dvec3(terms[first + i]),
                  {position, lights[i].position + origin_});
   };
-  lamps("spot", spots_, INSPECTED_SPOTS);
-  lamps("point", points_, INSPECTED_POINTS);
+  lamps(spots_, INSPECTED_SPOTS);
+  lamps(points_, INSPECTED_POINTS);
+  if (!plainLamps_.empty())
+    answer.add("direct", fmt::format("{} lamps without shadows", plainLamps_.size()),
+               glm::dvec3(terms[INSPECTED_PLAIN_LAMPS]), {position});
 }
 
 }  // namespace lucerna

@@ -5,6 +5,7 @@
 #include "gl/read_pictures.hpp"
 #include "render/techniques.hpp"
 #include "rsm/lamp_choice.hpp"
+#include "scene/coat.hpp"
 #include "scene/place.hpp"
 #include "shared/bindings.h"
 
@@ -14,6 +15,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <set>
 #include <span>
 
 namespace lucerna {
@@ -32,17 +35,33 @@ double farPlane(const Camera& camera, const Bounds& bounds) {
 
 double nearPlane(const Bounds& bounds) { return 5e-4 * std::max(glm::length(bounds.extent()), 1e-6); }
 
-// Near and far planes follow the scene: far just behind its farthest corner, near at 1/2000 of its diagonal.
+// Near and far planes follow the scene: far just behind its farthest corner, near at 1/2000 of its diagonal. An
+// orthographic view begins at its camera.
 glm::dmat4 clipFromWorld(const Camera& camera, const Bounds& bounds, glm::ivec2 size) {
-  const double aspect = static_cast<double>(size.x) / size.y;
-  return glm::perspective(camera.verticalFov, aspect, nearPlane(bounds), farPlane(camera, bounds)) *
-         glm::lookAt(camera.position, camera.position + camera.direction, camera.up);
+  const double aspect = static_cast<double>(size.x) / size.y, half = camera.halfHeight();
+  const glm::dmat4 clipFromView =
+      camera.isOrthographic()
+          ? glm::ortho(-half * aspect, half * aspect, -half, half, 0.0, farPlane(camera, bounds))
+          : glm::perspective(camera.verticalFov, aspect, nearPlane(bounds), farPlane(camera, bounds));
+  return clipFromView * glm::lookAt(camera.position, camera.position + camera.direction, camera.up);
 }
 
 std::vector<std::string_view> environmentTechniques() {
   std::vector<std::string_view> names;
   for (const TechniqueEntry& technique : allTechniques())
     if (technique.model({}).environmentAndEmission) names.push_back(technique.name);
+  return names;
+}
+
+/// Names of the drawn materials that show mostly what they reflect.
+std::vector<std::string> reflectingMaterials(const Scene& scene) {
+  std::set<int> drawn;
+  for (const Mesh& mesh : scene.meshes)
+    if (mesh.indexCount > 0) drawn.insert(mesh.material);
+  std::vector<std::string> names;
+  for (const int i : drawn)
+    if (const Material& material = scene.materials[static_cast<std::size_t>(i)]; isMostlyReflection(material))
+      names.push_back("'" + material.name + "'");
   return names;
 }
 
@@ -81,8 +100,9 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
   points_ = pointViews(drawn);
   const bool reflectsLamps = technique.readsLightMaps && technique.readsLightMaps(settings_, features_);
   if ((showsDirect() || reflectsLamps) && LocalLights::isNeeded(features_)) {
-    keepMostImportant(programs, *gpuScene_, spots_, LocalLights::kMostSpots);
-    keepMostImportant(programs, *gpuScene_, points_, LocalLights::kMostPoints);
+    const auto most = static_cast<std::size_t>(settings_.lights.shadows);
+    for (std::vector<LightViews>* lamps : {&spots_, &points_})
+      std::ranges::move(keepMostImportant(programs, *gpuScene_, *lamps, most), std::back_inserter(plainLamps_));
   }
   if (showsDirect()) makeShadowMaps(programs);
   if (technique.drawsSurfaces && isNeeded) technique_ = technique.make(parts(context, programs, scene));
@@ -90,7 +110,23 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
     environmentView_.emplace(programs, scene);
   loadPrograms(programs);
 
-  if (features_.environment && !technique.model(settings_).environmentAndEmission)
+  warnOfWhatIsLeftOut(technique);
+}
+
+void Renderer::warnOfWhatIsLeftOut(const TechniqueEntry& technique) const {
+  const bool lacksLight = !technique.model(settings_).environmentAndEmission;
+  if (features_.emission && !features_.anyLight() && lacksLight)
+    logWarning("technique {}: emissive surfaces light nothing, and nothing else does ({} support it)", technique.name,
+               fmt::join(environmentTechniques(), ", "));
+  const gl::ShaderFlags flags = technique_ ? technique_->surfaceFlags() : gl::ShaderFlags{};
+  const bool reflects = std::ranges::count(flags, std::pair<std::string, int>("INDIRECT_SPECULAR", 1)) > 0;
+  const std::vector<std::string> reflecting = reflectingMaterials(gpuScene_->scene());
+  if (!reflects && settings_.component != Component::direct && !reflecting.empty())
+    logWarning(
+        "technique {}: of metals, mirrors and glass only lamps' highlights are drawn, not what they reflect or "
+        "let through: {} (irradiance-cache and path do)",
+        technique.name, fmt::join(reflecting, ", "));
+  if (features_.environment && lacksLight)
     logWarning("technique {}: the environment lights nothing ({} support it)", technique.name,
                fmt::join(environmentTechniques(), ", "));
 }
@@ -110,8 +146,15 @@ const Scene& Renderer::aboutOrigin(const Scene& scene) {
 }
 
 void Renderer::makeShadowMaps(gl::ProgramLibrary& programs) {
-  if (SunShadow::isNeeded(features_)) sunShadow_.emplace(programs, *gpuScene_, settings_.shadow);
-  if (LocalLights::isNeeded(features_)) localLights_.emplace(programs, *gpuScene_, settings_.lights, spots_, points_);
+  if (SunShadow::isNeeded(features_)) {
+    SunShadow::Settings shadow = settings_.shadow;
+    if (shadow.cascades.cascades == SunCascadeSettings::kAuto)
+      shadow.cascades.cascades =
+          neededCascades(gpuScene_->scene(), std::max(sunFrustum_.width, sunFrustum_.height) / shadow.size);
+    sunShadow_.emplace(programs, *gpuScene_, shadow);
+  }
+  if (LocalLights::isNeeded(features_))
+    localLights_.emplace(programs, *gpuScene_, settings_.lights, spots_, points_, plainLamps_);
 }
 
 SurfacePrograms Renderer::surfacePrograms(gl::ProgramLibrary& programs, bool inspected) const {
@@ -125,6 +168,7 @@ SurfacePrograms Renderer::surfacePrograms(gl::ProgramLibrary& programs, bool ins
                                {"SUN_CASCADES", sunShadow_ ? sunShadow_->cascades() : 0},
                                {"SPOTS", localLights_ ? static_cast<int>(spots_.size()) : 0},
                                {"POINTS", localLights_ ? static_cast<int>(points_.size()) : 0},
+                               {"PLAIN_LAMPS", localLights_ && localLights_->hasPlainLamps()},
                                {"EMISSION", features_.emission && showsRest},
                                {"INSPECTED", inspected}});
     for (const char* flag : {"HAZE", "SHOW_REFUSED", "INDIRECT_SPECULAR"})  // 0 unless the technique sets them
@@ -211,8 +255,9 @@ gl::Lines::View Renderer::linesView(const Camera& cameraInScene, const Bounds& b
   Bounds bounds = boundsInScene;
   bounds.min -= origin_;
   bounds.max -= origin_;
-  return {glm::mat4(clipFromWorld(camera, bounds, settings_.size)), static_cast<float>(nearPlane(bounds)),
-          static_cast<float>(farPlane(camera, bounds)), depth()};
+  const glm::mat4 clip(clipFromWorld(camera, bounds, settings_.size));
+  if (camera.isOrthographic()) return {clip};  // its clip w, 1, is no distance to compare with the depth's
+  return {clip, static_cast<float>(nearPlane(bounds)), static_cast<float>(farPlane(camera, bounds)), depth()};
 }
 
 void Renderer::bindFrameConstants(const FrameView& view) {
@@ -229,6 +274,7 @@ void Renderer::bindFrameConstants(const FrameView& view) {
         SunShadow::normalOffset(std::max(sunFrustum_.width, sunFrustum_.height) / settings_.shadow.size);
   }
   frame.background = scene.background;
+  if (view.camera.isOrthographic()) frame.orthographicAxis = glm::vec3(view.camera.direction);
   bindFrameConstants(frame);
 }
 
@@ -287,7 +333,7 @@ void Renderer::shade(const FrameView& view, bool depthIsDrawn) {
 double Renderer::iterationsOfSurface() const {
   constexpr double kIterationsOfMaterial = 4.0, kIterationsOfSun = 9.0, kIterationsOfLamp = 4.0;
   const int suns = sunShadow_ ? std::max(sunShadow_->cascades(), 1) : 0;
-  const double lamps = localLights_ ? static_cast<double>(spots_.size() + points_.size()) : 0.0;
+  const double lamps = localLights_ ? static_cast<double>(spots_.size() + points_.size() + plainLamps_.size()) : 0.0;
   return kIterationsOfMaterial + kIterationsOfSun * suns + kIterationsOfLamp * lamps +
          (technique_ ? technique_->iterationsOfPixel() : 0.0);
 }

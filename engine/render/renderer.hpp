@@ -106,6 +106,7 @@ class Renderer {
   InspectedTerms drawInspected(gl::ProgramLibrary& programs, const FrameView& view, glm::ivec2 fromBelow);
   void addDirectShares(const InspectedTerms& terms, PixelInspection& answer);
   std::span<const GeometryTechnique::Sides> sides() const;
+  void warnOfWhatIsLeftOut(const TechniqueEntry& technique) const;
   bool showsDirect() const;  ///< direct light of any kind, by shadow maps
 
   RenderSettings settings_;
@@ -120,7 +121,8 @@ class Renderer {
   PictureTechnique* picture_ = nullptr;
   std::optional<GpuScene> gpuScene_;  ///< not with a PictureTechnique
   SunFrustum sunFrustum_;
-  std::vector<LightViews> spots_, points_;
+  std::vector<LightViews> spots_, points_;  ///< with shadow maps
+  std::vector<LightViews> plainLamps_;  ///< without
   gl::Buffer frameConstants_;
   gl::VertexArray noAttributes_;
   gl::Texture radiance_, depth_, display_;

@@ -19,11 +19,20 @@ std::span<const Setting> sharedSettings() {
   static const std::vector<Setting> table{
       {"shadow.size", number(FRAME_FIELD(shadow.size), 1, 16384), "texels",
        "side of the sun's shadow map, of each cascade", "", rebuild, "", "", "shadows"},
-      {"shadow.cascades", number(FRAME_FIELD(shadow.cascades.cascades), 1, SUN_MAX_CASCADES), "",
-       "shadow maps of the sun along the view; 1: one for the whole scene", "[Zhang2006]", rebuild, "", "", "shadows"},
+      {"shadow.cascades",
+       number(FRAME_FIELD(shadow.cascades.cascades), 1, SUN_MAX_CASCADES, "auto", SunCascadeSettings::kAuto), "",
+       "shadow maps of the sun along the view; 1: one for the whole scene; auto: one, unless a mesh has less than 4 of "
+       "its "
+       "texels",
+       "[Zhang2006]", rebuild, "", "", "shadows"},
       {"shadow.split", number(FRAME_FIELD(shadow.cascades.split), 0.0, 1.0), "",
        "how cascades divide the view's depth: 0 uniformly, 1 logarithmically", "[Zhang2006, section 3.2]", rebuild, "",
        "", "shadows"},
+      {"shadow.lamps", number(FRAME_FIELD(lights.shadows), 0, LIGHTS_MAX_SHADOWS), "of a kind",
+       "spots, and omnidirectional lights, with shadow maps, at most: those that light the scene most; the others "
+       "shine "
+       "through what is before them",
+       "", rebuild, "", "", "shadows"},
       {"shadow.spot-size", number(FRAME_FIELD(lights.spotSize), 1, 16384), "texels",
        "side of a spot light's shadow map", "", rebuild, "", "", "shadows"},
       {"shadow.point-size", number(FRAME_FIELD(lights.pointSize), 1, 16384), "texels",

@@ -2,7 +2,7 @@
 
 #include "base/log.hpp"
 
-#include <fmt/ranges.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <numeric>
@@ -10,9 +10,9 @@
 
 namespace lucerna {
 
-void keepMostImportant(gl::ProgramLibrary& programs, const GpuScene& scene, std::vector<LightViews>& views,
-                       std::size_t most) {
-  if (views.size() <= most) return;
+std::vector<LightViews> keepMostImportant(gl::ProgramLibrary& programs, const GpuScene& scene,
+                                          std::vector<LightViews>& views, std::size_t most) {
+  if (views.size() <= most) return {};
   const bool points = views.front().omnidirectional();
   ReflectiveShadowMap::Settings settings;
   settings.light = points ? ReflectiveShadowMap::Light::point : ReflectiveShadowMap::Light::spot;
@@ -32,23 +32,30 @@ void keepMostImportant(gl::ProgramLibrary& programs, const GpuScene& scene, std:
   std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(most));
   std::sort(order.begin() + static_cast<std::ptrdiff_t>(most), order.end());
   const double all = std::accumulate(reflected.begin(), reflected.end(), 0.0);
-  std::vector<LightViews> kept;
-  std::vector<std::string> leftOut;
+  std::vector<LightViews> kept, others;
+  std::string names;
   double lost = 0.0;
   for (std::size_t k = 0; k < order.size(); ++k) {
     if (k < most) {
       kept.push_back(std::move(views[order[k]]));
       continue;
     }
-    leftOut.push_back(std::to_string(views[order[k]].index));
+    if (!(reflected[order[k]] > 0.0)) continue;  // it lights nothing
+    constexpr std::size_t kMostNames = 8;
+    LightViews& other = others.emplace_back(std::move(views[order[k]]));
+    if (others.size() <= kMostNames)
+      names += fmt::format("{}{}[{}]", names.empty() ? "" : ", ", other.isPoint ? "points" : "spots", other.index);
+    else if (others.size() == kMostNames + 1) names += ", ...";
     lost += reflected[order[k]];
   }
-  logWarning(
-      "{} {} lights, only the {} that light the scene most are drawn; left out, with {:.2g} % of the light: {}[{}] "
-      "(the path tracer uses all)",
-      views.size(), points ? "omnidirectional" : "spot", most, all > 0.0 ? 100.0 * lost / all : 0.0,
-      points ? "points" : "spots", fmt::join(leftOut, ", "));
+  if (!others.empty())
+    logWarning(
+        "{} {} lights: the {} that light the scene most have shadows and are in maps of light; others, with {:.2g} % "
+        "of "
+        "it, shine through what is before them: {} (shadow.lamps; the path tracer and radiosity have all)",
+        views.size(), points ? "omnidirectional" : "spot", most, 100.0 * lost / all, names);
   views = std::move(kept);
+  return others;
 }
 
 }  // namespace lucerna

@@ -1,4 +1,4 @@
-// Chooses the lamps to draw if a scene has more than the shaders support: those that light it most.
+// Chooses the lamps that have shadow maps if a scene has more than are allowed: those that light it most.
 //
 // Input: the views of all lamps of one kind. A lamp's importance is its flux reflected by surfaces, from a small
 // reflective shadow map: light that misses the scene or hits black does not count.
@@ -10,9 +10,9 @@
 
 namespace lucerna {
 
-/// Keeps the `most` lamps of `views` (all of one kind) that light the scene most, in their order. One warning names the
-/// others and their share of the light. Draws nothing if there are no more than that.
-void keepMostImportant(gl::ProgramLibrary& programs, const GpuScene& scene, std::vector<LightViews>& views,
-                       std::size_t most);
+/// Keeps the `most` lamps of `views` (all of one kind) that light the scene most, in their order, and returns the
+/// others. One warning names their share of the light. Draws nothing if there are no more than that.
+std::vector<LightViews> keepMostImportant(gl::ProgramLibrary& programs, const GpuScene& scene,
+                                          std::vector<LightViews>& views, std::size_t most);
 
 }  // namespace lucerna

@@ -28,7 +28,7 @@ ReflectiveShadowMap::ReflectiveShadowMap(gl::ProgramLibrary& programs, const Gpu
                                {"ALBEDO", settings.albedo},
                                {"HAZE", settings.haze && settings.light == Light::sun}});
     return &programs.loadRaster(fmt::format("{} {}", name, masked ? "masked" : "opaque"), "rsm/rsm.vert",
-                                "rsm/rsm.frag", flags, layers > 1 ? "rsm/rsm.geom" : "");
+                                "rsm/rsm.frag", flags, settings.light != Light::sun ? "rsm/rsm.geom" : "");
   };
   programs_.opaque = load(false);
   if (scene.features().alphaMasks) programs_.masked = load(true);

@@ -15,8 +15,8 @@ RsmFrame::RsmFrame(const FrameParts& parts)
     : parts_(parts),
       maps_(parts, false),
       visible_(parts.programs, parts.drawn(), parts.depth),
-      gather_(parts.programs, parts.features, parts.settings.of<RsmGather::Settings>(), visible_,
-              parts.settings.unmeasuredIterations) {}
+      gather_(parts.programs, {parts.features.directionalLight, !parts.spots.empty(), !parts.points.empty()},
+              parts.settings.of<RsmGather::Settings>(), visible_, parts.settings.unmeasuredIterations) {}
 
 void RsmFrame::resize() {
   visible_.resize(parts_.depth);
@@ -24,9 +24,8 @@ void RsmFrame::resize() {
 }
 
 RsmGather::Inputs RsmFrame::inputsOf(gl::TimeQuery& timer, const FrameView& view) {
-  RsmGather::Inputs inputs{{},
-                           glm::mat4(glm::inverse(view.clip)),
-                           static_cast<float>(2.0 * std::tan(0.5 * view.camera.verticalFov) / visible_.size().y)};
+  RsmGather::Inputs inputs{
+      {}, glm::mat4(glm::inverse(view.clip)), static_cast<float>(2.0 * view.camera.halfHeight() / visible_.size().y)};
   auto spot = parts_.spots.begin(), point = parts_.points.begin();
   for (const ReflectiveShadowMap::Outputs& map : maps_.record(timer)) {
     using Light = ReflectiveShadowMap::Light;

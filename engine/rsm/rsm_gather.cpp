@@ -62,14 +62,13 @@ gl::ShaderFlags RsmGather::flags(const Settings& settings, Light light) {
           {"INSPECTED", 0}};
 }
 
-RsmGather::RsmGather(gl::ProgramLibrary& programs, const SceneFeatures& features, const Settings& settings,
+RsmGather::RsmGather(gl::ProgramLibrary& programs, const std::array<bool, 3>& lights, const Settings& settings,
                      const VisibleSurfaces& visible, double unmeasuredIterations)
     : settings_(settings), visible_(&visible), chunks_(unmeasuredIterations) {
-  const std::array<std::pair<bool, const char*>, 3> lights{
-      {{features.directionalLight, ""}, {features.spotLights, " spot"}, {features.pointLights, " lamp"}}};
+  constexpr std::array<const char*, 3> kNames{"", " spot", " lamp"};
   for (std::size_t i = 0; i < lights.size(); ++i) {
-    const auto& [needed, name] = lights[i];
-    if (!needed) continue;
+    if (!lights[i]) continue;
+    const char* const name = kNames[i];
     const gl::ShaderFlags flagsOfLight = flags(settings, static_cast<Light>(i));
     if (settings.interpolates())
       low_[i] = &programs.loadCompute(fmt::format("rsm gather{} low", name), "rsm/gather_low.comp", flagsOfLight);

@@ -55,9 +55,10 @@ class RsmGather {
   };
   static bool isNeeded(const SceneFeatures& features) { return ReflectiveShadowMap::isNeeded(features); }
 
-  /// Gathers at the pixels of `visible`, which must outlive this and be drawn before. Compiles for the kinds of light
-  /// in `features`. unmeasuredIterations: of a submission where a frame's gather is cut (gl/picture_chunks.hpp).
-  RsmGather(gl::ProgramLibrary& programs, const SceneFeatures& features, const Settings& settings,
+  /// Gathers at the pixels of `visible`, which must outlive this and be drawn before. lights: whether there
+  /// are maps of the sun, of spots and of omnidirectional lights. unmeasuredIterations: of a submission where a frame's
+  /// gather is cut (gl/picture_chunks.hpp).
+  RsmGather(gl::ProgramLibrary& programs, const std::array<bool, 3>& lights, const Settings& settings,
             const VisibleSurfaces& visible, double unmeasuredIterations = gl::kUnmeasuredIterations);
   void resize();  ///< to the current size of the visible surfaces
 

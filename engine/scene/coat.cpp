@@ -95,6 +95,14 @@ glm::vec3 wholeReflectance(const Material& material) {
   return material.bsdf == Bsdf::conductor ? coat : coat + (1.0f - coat) * material.diffuse;
 }
 
+bool isMostlyReflection(const Material& material) {
+  if (material.bsdf != Bsdf::diffuse) return material.bsdf != Bsdf::none;
+  if (!hasCoat(material)) return false;
+  const glm::vec3 coat = meanCoatReflectance(material.specular, material.roughness),
+                  base = (1.0f - coat) * material.diffuse;
+  return coat.x + coat.y + coat.z > base.x + base.y + base.z && coat.x + coat.y + coat.z > 0.3f;
+}
+
 float alphaOfExponent(float exponent) { return std::sqrt(2.0f / (std::max(exponent, 0.0f) + 2.0f)); }
 
 glm::vec3 baseUnderCoat(const glm::vec3& diffuse, const glm::vec3& specular) {

@@ -37,6 +37,9 @@ glm::vec3 meanCoatReflectance(const glm::vec3& specular, float alpha);
 /// Whether it reflects as a rough coat: also a conductor that is not smooth.
 bool hasCoat(const Material& material);
 
+/// Whether what it reflects, or lets through, is most of what it shows: metals, mirrors, glass.
+bool isMostlyReflection(const Material& material);
+
 /// Part of light from all sides that a surface reflects to all sides: what techniques for Lambertian surfaces take as
 /// its albedo. Without textures; mirrors and metals count with all of their reflection.
 glm::vec3 wholeReflectance(const Material& material);

@@ -91,7 +91,7 @@ SceneFeatures analyse(const Scene& scene) {
     const Material& material = scene.materials[static_cast<std::size_t>(mesh.material)];
     features.diffuseTextures |= material.diffuseTexture >= 0;
     features.alphaMasks |= material.alphaMasked;
-    features.specular |= hasCoat(material);
+    features.specular |= hasCoat(material) || (material.bsdf != Bsdf::diffuse && material.bsdf != Bsdf::none);
     features.emission |= anyPositive(material.emission);
     features.emissionTextures |= anyPositive(material.emission) && material.emissionTexture >= 0;
     features.normalMaps |= material.normalTexture >= 0 && material.normalScale != 0.0f;

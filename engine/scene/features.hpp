@@ -15,7 +15,7 @@ namespace lucerna {
 struct SceneFeatures {
   bool diffuseTextures = false;  ///< any drawn mesh has an albedo texture
   bool alphaMasks = false;  ///< any drawn mesh is cut out by a mask
-  bool specular = false;  ///< any drawn mesh has a coat, or mirrors
+  bool specular = false;  ///< any drawn mesh has a coat, or is a mirror, metal or glass
   bool emission = false;  ///< any drawn mesh emits
   bool directionalLight = false;  ///< a sun with irradiance > 0
   bool background = false;  ///< background radiance > 0

@@ -68,6 +68,7 @@ void addScene(Hash& h, const Scene& scene) {
 void addCamera(Hash& h, const Camera& camera) {
   h.add(camera.position), h.add(camera.direction), h.add(camera.up);
   h.add(camera.verticalFov);
+  if (camera.isOrthographic()) h.add(camera.orthographicHeight);
 }
 
 }  // namespace lucerna

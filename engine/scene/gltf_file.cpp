@@ -1,11 +1,13 @@
 #include "scene/gltf_file.hpp"
 
+#include "base/files.hpp"
 #include "base/json.hpp"
+#include "scene/model_parts.hpp"
 
-#include <charconv>
+#include <algorithm>
+#include <bit>
 #include <cmath>
-#include <map>
-#include <optional>
+#include <cstring>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,318 +19,407 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Maximum number of elements of an accessor without bytes of its own (all zero, or sparse).
-constexpr std::uint64_t kMostZeroElements = 1u << 24;
+constexpr std::size_t kMostZeroElements = 1u << 22;
 
-std::uint32_t wordAt(std::span<const std::uint8_t> bytes, std::size_t at) {
+/// Extensions that are read. Materials without what others describe are named by their reader.
+constexpr std::string_view kSupported[] = {
+    "EXT_mesh_gpu_instancing",    "KHR_lights_punctual",   "KHR_materials_emissive_strength",
+    "KHR_materials_ior",          "KHR_materials_volume",  "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_transmission", "KHR_texture_transform", "KHR_mesh_quantization"};
+
+bool isSupported(std::string_view name) {
+  return std::find(std::begin(kSupported), std::end(kSupported), name) != std::end(kSupported);
+}
+
+/// Metadata, which changes no picture.
+bool hasNoEffect(std::string_view name) { return name == "KHR_xmp" || name == "KHR_xmp_json_ld"; }
+
+std::uint32_t glbWord(std::span<const std::uint8_t> bytes, std::size_t at) {
   return std::uint32_t{bytes[at]} | std::uint32_t{bytes[at + 1]} << 8 | std::uint32_t{bytes[at + 2]} << 16 |
          std::uint32_t{bytes[at + 3]} << 24;
 }
 
+struct Chunks {
+  std::string_view json;
+  std::optional<std::span<const std::uint8_t>> binary;
+};
+
 /// The JSON text: the whole file, or the first chunk of a binary one (section 4.4: 12 bytes of header, then length,
-/// type and data of each chunk).
-std::string_view jsonText(const fs::path& file, std::span<const std::uint8_t> bytes) {
+/// type and data of each chunk), whose second chunk is the first buffer.
+Chunks chunksOf(const fs::path& file, std::span<const std::uint8_t> bytes) {
   const std::string_view all(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  if (!all.starts_with("glTF")) return all;
+  if (!all.starts_with("glTF")) return {all, std::nullopt};
   if (bytes.size() < 20)
     throwBadInput("{}: {} bytes are too few for a binary glTF; is the file truncated?", file.string(), bytes.size());
-  if (wordAt(bytes, 4) == 1) {  // version 1: length and format (0: JSON) of the scene are in the header
-    const std::uint32_t length = wordAt(bytes, 12);
-    if (length > bytes.size() - 20)
-      throwBadInput("{}: a scene of {} bytes, {} are there; is the file truncated?", file.string(), length,
-                    bytes.size() - 20);
-    return all.substr(20, length);
+  if (const std::uint32_t version = glbWord(bytes, 4); version != 2)
+    throwBadInput("{}: glTF {}.0 is not supported, only glTF 2.0", file.string(), version);
+  if (const std::uint32_t length = glbWord(bytes, 8); length > bytes.size())
+    throwBadInput("{}: a binary glTF of {} bytes, {} are there; is the file truncated?", file.string(), length,
+                  bytes.size());
+  Chunks chunks;
+  for (std::size_t at = 12; at + 8 <= bytes.size();) {
+    const std::uint32_t length = glbWord(bytes, at);
+    const std::string_view type = all.substr(at + 4, 4);
+    at += 8;
+    const bool isJson = type == "JSON";
+    if (chunks.json.empty() && !isJson)
+      throwBadInput("{}: the first chunk of a binary glTF must be JSON", file.string());
+    if (length > bytes.size() - at)
+      throwBadInput("{}: a {} chunk of {} bytes, {} are there; is the file truncated?", file.string(),
+                    isJson ? "JSON" : "binary", length, bytes.size() - at);
+    if (isJson && length == 0) throwBadInput("{}: the JSON chunk is empty", file.string());
+    if (isJson && chunks.json.empty()) chunks.json = all.substr(at, length);
+    else if (type == std::string_view("BIN\0", 4) && !chunks.binary) chunks.binary = bytes.subspan(at, length);
+    at += length;
   }
-  const std::uint32_t length = wordAt(bytes, 12);
-  if (all.substr(16, 4) != "JSON") throwBadInput("{}: the first chunk of a binary glTF must be JSON", file.string());
-  if (length > bytes.size() - 20)
-    throwBadInput("{}: a JSON chunk of {} bytes, {} are there; is the file truncated?", file.string(), length,
-                  bytes.size() - 20);
-  return all.substr(20, length);
+  // Some writers pad the text with zeros.
+  while (chunks.json.ends_with('\0')) chunks.json.remove_suffix(1);
+  return chunks;
 }
 
-/// Members of an array or object (glTF 1 has objects), by index or name.
-std::map<std::string, const Json*> membersOf(const Json& root, const char* key) {
-  std::map<std::string, const Json*> members;
-  const auto found = root.find(key);
-  if (found == root.end() || !found->is_structured()) return members;
-  for (const auto& [name, member] : found->items()) members.emplace(name, &member);
-  return members;
+int sextet(char c) {
+  if (c >= 'A' && c <= 'Z') return c - 'A';
+  if (c >= 'a' && c <= 'z') return c - 'a' + 26;
+  if (c >= '0' && c <= '9') return c - '0' + 52;
+  return c == '+' || c == '-' ? 62 : c == '/' || c == '_' ? 63 : -1;
 }
 
-std::string nameOfReference(const Json& reference) {
-  return reference.is_string() ? reference.get<std::string>() : reference.dump();
+int hexDigit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  return c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
 }
 
-void checkNodes(const fs::path& file, const Json& root) {
-  const std::map<std::string, const Json*> nodes = membersOf(root, "nodes");
-  std::map<std::string, std::string> parents;
-  for (const auto& [name, node] : nodes) {
-    const auto children = node->is_object() ? node->find("children") : node->end();
-    if (!node->is_object() || children == node->end()) continue;
-    if (!children->is_array()) throwBadInput("{}: node {}: \"children\" must be an array", file.string(), name);
-    for (const Json& child : *children) {
-      const std::string childName = nameOfReference(child);
-      if (!nodes.contains(childName)) throwBadInput("{}: node {}: no such node: {}", file.string(), name, childName);
-      const auto [before, isNew] = parents.emplace(childName, name);
-      if (!isNew)
-        throwBadInput("{}: node {} is a child of node {} and of node {}; nodes must be trees", file.string(), childName,
-                      before->second, name);
+/// RFC 3986, section 2.1. A % that begins no code stands for itself.
+std::string percentDecoded(std::string_view text) {
+  std::string result;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const int high = text[i] == '%' && i + 2 < text.size() ? hexDigit(text[i + 1]) : -1;
+    const int low = high >= 0 ? hexDigit(text[i + 2]) : -1;
+    if (low >= 0) result += static_cast<char>(16 * high + low), i += 2;
+    else result += text[i];
+  }
+  return result;
+}
+
+struct ComponentType {
+  int code;
+  std::size_t bytes;
+  double most;  ///< what `normalized` divides by; 0: not an integer
+  bool isSigned;
+};
+
+constexpr ComponentType kComponentTypes[] = {{5120, 1, 127.0, true},         {5121, 1, 255.0, false},
+                                             {5122, 2, 32767.0, true},       {5123, 2, 65535.0, false},
+                                             {5125, 4, 4294967295.0, false}, {5126, 4, 0.0, true}};
+
+const ComponentType* componentType(const Json& code) {
+  const auto found = std::find_if(std::begin(kComponentTypes), std::end(kComponentTypes),
+                                  [&](const auto& t) { return code == t.code; });
+  return found != std::end(kComponentTypes) ? found : nullptr;
+}
+
+ComponentType componentTypeOf(const Value& object) {
+  if (!object.has("componentType")) object.fail("an object with a componentType");
+  const ComponentType* type = componentType(object.at("componentType").json);
+  if (!type) object.at("componentType").fail("5120, 5121, 5122, 5123, 5125 or 5126");
+  return *type;
+}
+
+double numberAt(const std::uint8_t* bytes, const ComponentType& type) {
+  std::uint32_t word = 0;  // little-endian
+  for (std::size_t i = 0; i < type.bytes; ++i) word |= std::uint32_t{bytes[i]} << (8 * i);
+  switch (type.code) {
+    case 5120: return static_cast<std::int8_t>(word);
+    case 5122: return static_cast<std::int16_t>(word);
+    case 5126: return static_cast<double>(std::bit_cast<float>(word));
+    default: return word;
+  }
+}
+
+}  // namespace
+
+std::size_t wholeNumber(const Value& object, std::string_view key) {
+  if (!object.has(key)) return 0;
+  const Value value = object.at(key);
+  if (!value.json.is_number_unsigned()) value.fail("an integer, 0 or more");
+  return value.json.get<std::size_t>();
+}
+
+std::optional<std::vector<std::uint8_t>> dataOf(const Value& uri) {
+  const std::string text = uri.text();
+  if (!text.starts_with("data:")) return std::nullopt;
+  const std::size_t comma = text.find(',');
+  if (comma == std::string::npos) uri.fail("data:[type];base64,...");
+  std::vector<std::uint8_t> bytes;
+  const std::string content = percentDecoded(std::string_view(text).substr(comma + 1));
+  if (!std::string_view(text).substr(0, comma).ends_with(";base64")) return {{content.begin(), content.end()}};
+  bytes.reserve(content.size() / 4 * 3);
+  std::uint32_t held = 0;
+  int bits = 0;
+  for (const char c : content) {
+    if (c == '=' || c == '\n' || c == '\r' || c == ' ') continue;
+    const int value = sextet(c);
+    if (value < 0) uri.fail("data in base64");
+    held = held << 6 | static_cast<std::uint32_t>(value);
+    bits += 6;
+    if (bits < 8) continue;
+    bits -= 8;
+    bytes.push_back(static_cast<std::uint8_t>(held >> bits & 255u));
+  }
+  return bytes;
+}
+
+std::string fileNameOf(const Value& uri) {
+  const std::string written = uri.text(), decoded = percentDecoded(written);
+  const auto isThere = [&](const std::string& name) {
+    std::error_code error;
+    return name.find('\0') == std::string::npos && fs::exists(uri.file.parent_path() / name, error);
+  };
+  return !isThere(decoded) && isThere(written) ? written : decoded;
+}
+
+GltfFile::GltfFile(const fs::path& file, std::span<const std::uint8_t> bytes) : file_(file), size_(bytes.size()) {
+  const Chunks chunks = chunksOf(file, bytes);
+  root_ = parseJson<Json>(chunks.json, file.string());
+  if (!root_.is_object()) throwBadInput("{}: expected a JSON object, a glTF", file.string());
+  if (chunks.binary) binary_.emplace(chunks.binary->begin(), chunks.binary->end());
+  checkVersion();
+  checkExtensions();
+  readParents();
+}
+
+void GltfFile::checkVersion() const {
+  std::string version;
+  if (root_.contains("meshes") && root_.at("meshes").is_object()) version = "1.0";  // arrays since 2.0
+  if (root_.contains("asset")) {
+    const Value asset = root().at("asset");
+    if (!asset.json.is_object()) asset.fail("an object {...}");
+    if (asset.has("version")) {
+      const Value given = asset.at("version");
+      version = given.json.is_number() ? fmt::format("{:.1f}", given.number()) : given.text();
+    }
+    // 2.x can be read as 2.0 unless the file says otherwise.
+    const bool isReadable = version == "2" || version.starts_with("2.");
+    if (isReadable && asset.has("minVersion") && asset.at("minVersion").text() != "2.0")
+      version = asset.at("minVersion").text();
+    else if (isReadable) return;
+  }
+  if (version.empty()) throwBadInput("{}: no \"version\" of an \"asset\": not a glTF", file_.string());
+  throwBadInput("{}: glTF {} is not supported, only glTF 2.0", file_.string(), version);
+}
+
+void GltfFile::checkExtensions() const {
+  if (!root_.contains("extensionsRequired")) return;
+  const Value required = root().at("extensionsRequired");
+  if (!required.json.is_array()) required.fail("an array");
+  std::string unknown;
+  for (std::size_t i = 0; i < required.json.size(); ++i)
+    if (const std::string name = required.at(i).text(); !isSupported(name))
+      unknown += (unknown.empty() ? "" : ", ") + name;
+  if (!unknown.empty()) throwBadInput("{}: requires extensions that are not supported: {}", file_.string(), unknown);
+}
+
+std::vector<std::string> GltfFile::unsupported() const {
+  std::set<std::string> ofMaterials;
+  for (std::size_t i = 0; i < count("materials"); ++i)
+    if (const Value material = at("materials", i); material.json.is_object() && material.has("extensions"))
+      for (const auto& extension : material.at("extensions").json.items()) ofMaterials.insert(extension.key());
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < count("extensionsUsed"); ++i) {
+    const std::string name = at("extensionsUsed", i).text();
+    if (!isSupported(name) && !hasNoEffect(name) && !ofMaterials.contains(name)) names.push_back(name);
+  }
+  return names;
+}
+
+void GltfFile::readParents() {
+  const std::size_t nodes = count("nodes");
+  parents_.assign(nodes, -1);
+  for (std::size_t i = 0; i < nodes; ++i) {
+    const Value node = at("nodes", i);
+    if (!node.json.is_object()) node.fail("an object {...}");
+    if (!node.has("children")) continue;
+    const Value children = node.at("children");
+    if (!children.json.is_array()) children.fail("an array");
+    for (std::size_t k = 0; k < children.json.size(); ++k) {
+      const Json& child = children.json[k];
+      if (!child.is_number_unsigned() || child.get<std::size_t>() >= nodes)
+        throwBadInput("{}: node {}: no such node: {}", file_.string(), i, child.dump());
+      int& parent = parents_[child.get<std::size_t>()];
+      if (parent >= 0)
+        throwBadInput("{}: node {} is a child of node {} and of node {}; nodes must be trees", file_.string(),
+                      child.get<std::size_t>(), parent, i);
+      parent = static_cast<int>(i);
     }
   }
   // Every node has at most one parent, so only a cycle makes the walk upwards endless.
-  std::map<std::string, int> depths;
-  for (const auto& [name, node] : nodes) {
-    std::vector<std::string> way;
-    std::string at = name;
-    for (; !depths.contains(at); at = parents.at(at)) {
-      way.push_back(at);
-      if (way.size() > static_cast<std::size_t>(kMostNodeDepth))
-        throwBadInput("{}: node {} is its own descendant, or nested more than {} deep", file.string(), name,
+  std::vector<int> depths(nodes, -1);
+  for (std::size_t i = 0; i < nodes; ++i) {
+    std::vector<std::size_t> way;
+    int depth = -1;
+    for (int at = static_cast<int>(i); at >= 0 && depth < 0; at = parents_[static_cast<std::size_t>(at)]) {
+      depth = depths[static_cast<std::size_t>(at)];
+      if (depth < 0) way.push_back(static_cast<std::size_t>(at));
+      if (way.size() > static_cast<std::size_t>(kMostNodeDepth) + 1)
+        throwBadInput("{}: node {} is its own descendant, or nested more than {} deep", file_.string(), i,
                       kMostNodeDepth);
-      if (parents.contains(at)) continue;
-      depths[at] = 0;
-      way.pop_back();
-      break;
     }
-    int depth = depths.at(at);
     for (auto step = way.rbegin(); step != way.rend(); ++step) depths[*step] = ++depth;
     if (depth > kMostNodeDepth)
-      throwBadInput("{}: node {} is nested more than {} deep", file.string(), name, kMostNodeDepth);
+      throwBadInput("{}: node {} is nested more than {} deep", file_.string(), i, kMostNodeDepth);
   }
 }
 
-/// A non-negative integer of an object; 0 if missing. Anything else is left for Assimp to reject.
-std::uint64_t wholeNumber(const Json& object, const char* key) {
-  const auto found = object.find(key);
-  return found != object.end() && found->is_number_unsigned() ? found->get<std::uint64_t>() : 0;
+std::size_t GltfFile::count(std::string_view array) const {
+  if (!root().has(array)) return 0;
+  const Value value = root().at(array);
+  if (!value.json.is_array()) value.fail("an array");
+  return value.json.size();
 }
 
-void checkAccessors(const fs::path& file, const Json& root) {
-  const std::map<std::string, const Json*> views = membersOf(root, "bufferViews");
-  for (const auto& [name, accessor] : membersOf(root, "accessors")) {
-    if (!accessor->is_object()) continue;
-    const std::uint64_t count = wholeNumber(*accessor, "count");
-    const auto view = accessor->find("bufferView");
-    if (view == accessor->end()) {
-      if (count > kMostZeroElements)
-        throwBadInput("{}: accessor {}: {} elements without a buffer view, at most {} are supported", file.string(),
-                      name, count, kMostZeroElements);
-      continue;
-    }
-    const auto found = views.find(nameOfReference(*view));
-    if (found == views.end() || !found->second->is_object())
-      throwBadInput("{}: accessor {}: no such buffer view: {}", file.string(), name, nameOfReference(*view));
-    const std::uint64_t bytes = wholeNumber(*found->second, "byteLength");
-    if (count > bytes)
-      throwBadInput("{}: accessor {}: {} elements in a buffer view of {} bytes", file.string(), name, count, bytes);
-  }
+std::size_t GltfFile::indexOf(const Value& value, std::string_view array) const {
+  const std::size_t there = count(array);
+  if (!value.json.is_number_unsigned() || value.json.get<std::size_t>() >= there)
+    value.fail(fmt::format("the number of one of {} {}", there, array));
+  return value.json.get<std::size_t>();
 }
 
-}  // namespace
-
-Json checkedGltf(const fs::path& file, std::span<const std::uint8_t> bytes) {
-  Json root = parseJson<Json>(jsonText(file, bytes), file.string());
-  if (!root.is_object()) throwBadInput("{}: expected a JSON object, a glTF", file.string());
-  checkNodes(file, root);
-  checkAccessors(file, root);
-  return root;
-}
-
-std::vector<std::uint8_t> withNumbers(const Json& root, std::span<const std::uint8_t> bytes) {
-  Json numbered = root;
-  const auto putNumber = [](Json& object, std::size_t number, const std::string& nameless) {
-    const auto name = object.find("name");
-    if (name != object.end() && !name->is_string()) return;  // Assimp rejects it
-    object["name"] = fmt::format("{}#{}", number, name == object.end() ? nameless : name->get<std::string>());
-  };
-  if (const auto materials = numbered.find("materials"); materials != numbered.end() && materials->is_array())
-    for (std::size_t i = 0; i < materials->size(); ++i)
-      if ((*materials)[i].is_object()) putNumber((*materials)[i], i, "");
-  if (const auto nodes = numbered.find("nodes"); nodes != numbered.end() && nodes->is_array())
-    for (std::size_t i = 0; i < nodes->size(); ++i) {
-      Json& node = (*nodes)[i];
-      if (!node.is_object()) continue;
-      const auto camera = node.find("camera");
-      if (camera != node.end() && camera->is_number_unsigned())
-        putNumber(node, camera->get<std::size_t>(), fmt::format("nodes_{}", i));
-    }
-  std::string text = numbered.dump(-1, ' ', false, Json::error_handler_t::replace);
-  const std::size_t oldLength = jsonText({}, bytes).size();
-  if (oldLength == bytes.size()) return {text.begin(), text.end()};
-  // Binary: header, length and type of the first chunk, the text padded with blanks, the other chunks.
-  text.append((4 - text.size() % 4) % 4, ' ');
-  std::vector<std::uint8_t> result(bytes.begin(), bytes.begin() + 20);
-  result.insert(result.end(), text.begin(), text.end());
-  result.insert(result.end(), bytes.begin() + 20 + static_cast<std::ptrdiff_t>(oldLength), bytes.end());
-  const auto putWord = [&](std::size_t at, std::size_t value) {
-    for (std::size_t i = 0; i < 4; ++i) result[at + i] = static_cast<std::uint8_t>(value >> (8 * i) & 255u);
-  };
-  putWord(8, result.size());
-  putWord(12, text.size());
-  return result;
-}
-
-std::optional<std::size_t> numberOf(std::string_view name) {
-  std::size_t number = 0;
-  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
-  if (error != std::errc() || end == name.data() + name.size() || *end != '#') return std::nullopt;
-  return number;
-}
-
-std::string_view withoutNumber(std::string_view name) {
-  return numberOf(name) ? name.substr(name.find('#') + 1) : name;
-}
-
-double gltfFieldOfView(const Json& root, std::size_t index) {
-  const Json& angle = root.value(Json::json_pointer(fmt::format("/cameras/{}/perspective/yfov", index)), Json());
-  return angle.is_number() ? angle.get<double>() : 0.0;
-}
-
-glm::dvec2 TextureTransform::apply(const glm::dvec2& uv) const {
-  const double c = std::cos(rotation), s = std::sin(rotation);
-  const glm::dvec2 scaled = scale * uv;
-  return offset + glm::dvec2(c * scaled.x + s * scaled.y, c * scaled.y - s * scaled.x);
-}
-
-namespace {
-
-glm::dvec2 pairOf(const Value& v) {
-  if (!v.json.is_array() || v.json.size() != 2) v.fail("an array of 2 numbers");
-  return {v.at(std::size_t{0}).number(), v.at(std::size_t{1}).number()};
-}
-
-TextureTransform transformOf(const Value& texture) {
-  TextureTransform result;
-  if (texture.has("texCoord"))
-    result.texCoord = static_cast<unsigned>(
-        texture.at("texCoord").numberBetween(0.0, 7.0, "a number of texture coordinates, 0 to 7"));
-  if (!texture.has("extensions") || !texture.at("extensions").has("KHR_texture_transform")) return result;
-  const Value given = texture.at("extensions").at("KHR_texture_transform");
-  if (given.has("offset")) result.offset = pairOf(given.at("offset"));
-  if (given.has("scale")) result.scale = pairOf(given.at("scale"));
-  if (given.has("rotation")) result.rotation = given.at("rotation").number();
-  if (given.has("texCoord"))
-    result.texCoord =
-        static_cast<unsigned>(given.at("texCoord").numberBetween(0.0, 7.0, "a number of texture coordinates, 0 to 7"));
-  return result;
-}
-
-/// Whether a texture's sampler does anything but repeat.
-bool clamps(const Json& root, const Value& texture) {
-  constexpr int kRepeat = 10497;
-  const auto member = [&](const char* array, const Json& index) -> const Json* {
-    if (!root.contains(array) || !root.at(array).is_array() || !index.is_number_unsigned() ||
-        index.get<std::uint64_t>() >= root.at(array).size())
-      return nullptr;
-    const Json& found = root.at(array).at(index.get<std::size_t>());
-    return found.is_object() ? &found : nullptr;
-  };
-  const Json* source = texture.has("index") ? member("textures", texture.json.at("index")) : nullptr;
-  const Json* sampler = source && source->contains("sampler") ? member("samplers", source->at("sampler")) : nullptr;
-  if (!sampler) return false;
-  return sampler->value("wrapS", Json(kRepeat)) != kRepeat || sampler->value("wrapT", Json(kRepeat)) != kRepeat;
-}
-
-}  // namespace
-
-GltfMaterial gltfMaterial(const Json& root, const fs::path& file, std::size_t index) {
-  GltfMaterial result;
-  if (!root.contains("materials") || !root.at("materials").is_array() || index >= root.at("materials").size())
-    return result;
-  const Value material = Value{root, file, ""}.at("materials").at(index);
-  if (!material.json.is_object()) material.fail("an object {...}");
-  if (material.has("name") && material.at("name").json.is_string()) result.name = material.at("name").text();
-  const auto lacks = [&](const std::string& what) { result.notDone += (result.notDone.empty() ? "" : ", ") + what; };
-
-  // One set of texture coordinates serves all pictures.
-  std::optional<TextureTransform> baseTransform;
-  const auto read = [&](const Value& texture, const char* what) {
-    const TextureTransform transform = transformOf(texture);
-    result.clamped = result.clamped || clamps(root, texture);
-    if (!baseTransform) baseTransform = transform;
-    else if (!(transform == *baseTransform)) lacks(fmt::format("the {} texture lies as the first one does", what));
-  };
-  if (material.has("pbrMetallicRoughness")) {
-    const Value base = material.at("pbrMetallicRoughness");
-    if (!base.json.is_object()) base.fail("an object {...}");
-    if (base.has("baseColorFactor")) {
-      const Value factor = base.at("baseColorFactor");
-      if (!factor.json.is_array() || factor.json.size() != 4) factor.fail("an array of 4 numbers");
-      result.baseAlpha = factor.at(std::size_t{3}).numberBetween(0.0, 1.0, "a number from 0 to 1");
-    }
-    if (base.has("baseColorTexture")) read(base.at("baseColorTexture"), "base colour's");
-    if (base.has("metallicRoughnessTexture")) read(base.at("metallicRoughnessTexture"), "metallic-roughness");
-  }
-  if (material.has("normalTexture")) {
-    read(material.at("normalTexture"), "normal");
-    if (material.at("normalTexture").has("scale"))
-      result.normalScale = static_cast<float>(
-          material.at("normalTexture").at("scale").numberBetween(-1e3, 1e3, "a number from -1000 to 1000"));
-  }
-  if (material.has("emissiveTexture")) read(material.at("emissiveTexture"), "emissive");
-  result.transform = baseTransform.value_or(TextureTransform{});
-
-  // Alpha.
-  if (material.has("alphaMode")) {
-    const std::string mode = material.at("alphaMode").text();
-    if (mode != "OPAQUE" && mode != "MASK" && mode != "BLEND") material.at("alphaMode").fail("OPAQUE, MASK or BLEND");
-    result.alpha = mode == "MASK"    ? GltfMaterial::Alpha::mask
-                   : mode == "BLEND" ? GltfMaterial::Alpha::blend
-                                     : GltfMaterial::Alpha::opaque;
-    if (mode == "BLEND") lacks("not blended (BLEND) but cut out where alpha is below 0.5");
-  }
-  if (material.has("alphaCutoff"))
-    result.alphaCutoff = material.at("alphaCutoff").numberBetween(0.0, 1e6, "a number, 0 or more");
-
-  // Extensions; unknown ones are reported.
-  if (!material.has("extensions")) return result;
-  const Value extensions = material.at("extensions");
+std::optional<Value> GltfFile::extension(const Value& object, std::string_view name) {
+  if (!object.json.is_object() || !object.has("extensions")) return std::nullopt;
+  const Value extensions = object.at("extensions");
   if (!extensions.json.is_object()) extensions.fail("an object {...}");
-  for (const auto& member : extensions.json.items()) {
-    const std::string& name = member.key();
-    const Value extension = extensions.at(name);
-    if (!extension.json.is_object()) extension.fail("an object {...}");
-    if (name == "KHR_materials_emissive_strength") {
-      if (extension.has("emissiveStrength"))
-        result.emissiveStrength =
-            static_cast<float>(extension.at("emissiveStrength").numberBetween(0.0, 1e30, "a number, 0 or more"));
-    } else if (name == "KHR_materials_ior") {
-      if (extension.has("ior"))
-        result.ior = static_cast<float>(extension.at("ior").numberBetween(1.0, 10.0, "a number from 1 to 10"));
-    } else if (name == "KHR_materials_volume") {
-      if (extension.has("thicknessFactor"))
-        result.thickness = extension.at("thicknessFactor").numberBetween(0.0, 1e30, "a number, 0 or more");
-      if (!extension.has("attenuationDistance")) continue;  // no absorption
-      const double distance = extension.at("attenuationDistance").positiveNumber();
-      if (!extension.has("attenuationColor")) continue;
-      // Light is reduced to `colour` after `distance`. Black would be infinitely dense; a millionth is as good as
-      // black.
-      const glm::dvec3 colour =
-          glm::max(extension.at("attenuationColor").vectorBetween(0.0, 1.0, "an array of 3 numbers from 0 to 1"),
-                   glm::dvec3(1e-6));
-      result.absorption = glm::vec3(-glm::log(colour) / distance);
-    } else if (name == "KHR_materials_transmission") {
-      if (extension.has("transmissionFactor"))
-        result.transmission = extension.at("transmissionFactor").numberBetween(0.0, 1.0, "a number from 0 to 1");
-      if (extension.has("transmissionTexture")) lacks("transmission without its texture");
-    } else if (name != "KHR_materials_pbrSpecularGlossiness") {  // Assimp's own
-      lacks("no " + name);
-    }
-  }
-  return result;
+  if (!extensions.has(name)) return std::nullopt;
+  Value found = extensions.at(name);
+  if (!found.json.is_object()) found.fail("an object {...}");
+  return found;
 }
 
-std::string gltfLightsWithRange(const Json& root) {
-  std::string names;
-  const auto place = nlohmann::json::json_pointer("/extensions/KHR_lights_punctual/lights");
-  if (!root.contains(place) || !root.at(place).is_array()) return names;
-  for (const Json& light : root.at(place)) {
-    if (!light.is_object() || !light.contains("range")) continue;
-    const auto name = light.find("name");
-    names += (names.empty() ? "" : ", ") +
-             (name != light.end() && name->is_string() ? name->get<std::string>() : std::string("(no name)"));
+std::span<const std::uint8_t> GltfFile::bytesOfBuffer(std::size_t index) const {
+  const Value buffer = at("buffers", index);
+  const std::size_t length = wholeNumber(buffer, "byteLength");
+  const auto checked = [&](std::span<const std::uint8_t> bytes) {
+    if (bytes.size() < length)
+      throwBadInput("{}: buffer {}: {} bytes, {} are there; is it truncated?", file_.string(), index, length,
+                    bytes.size());
+    return bytes.first(length);
+  };
+  if (const auto known = buffers_.find(index); known != buffers_.end()) return checked(known->second);
+  if (!buffer.has("uri")) {
+    if (index == 0 && binary_) return checked(*binary_);
+    throwBadInput("{}: buffer {} has neither a uri nor a binary chunk", file_.string(), index);
   }
-  return names;
+  const Value uri = buffer.at("uri");
+  std::optional<std::vector<std::uint8_t>> bytes = dataOf(uri);
+  if (!bytes) {
+    const std::string name = withForwardSlashes(fileNameOf(uri));
+    try {
+      bytes = readFileBytes(file_.parent_path() / name);
+    } catch (const Error& error) {
+      throw Error(error.kind(), fmt::format("{}: buffer {}: {}", file_.string(), index, error.what()));
+    }
+  }
+  return checked(buffers_.emplace(index, std::move(*bytes)).first->second);
+}
+
+std::size_t GltfFile::bytesRead() const {
+  std::size_t bytes = size_;
+  for (const auto& [index, buffer] : buffers_) bytes += buffer.size();
+  return bytes;
+}
+
+std::span<const std::uint8_t> GltfFile::bytesOfView(std::size_t index) const {
+  const Value view = at("bufferViews", index);
+  if (!view.json.is_object() || !view.has("buffer")) view.fail("an object with a buffer");
+  const std::span<const std::uint8_t> buffer = bytesOfBuffer(indexOf(view.at("buffer"), "buffers"));
+  const std::size_t offset = wholeNumber(view, "byteOffset"), length = wholeNumber(view, "byteLength");
+  if (offset > buffer.size() || length > buffer.size() - offset)
+    throwBadInput("{}: buffer view {}: {} bytes from byte {} of a buffer of {} bytes", file_.string(), index, length,
+                  offset, buffer.size());
+  return buffer.subspan(offset, length);
+}
+
+/// `place`: an accessor, or indices or values of a sparse one; `component`: bytes of a number.
+GltfNumbers::Elements GltfFile::elementsAt(std::size_t accessor, const Value& place, std::size_t count,
+                                           std::size_t component, std::size_t width) const {
+  const std::size_t index = indexOf(place.at("bufferView"), "bufferViews");
+  const std::span<const std::uint8_t> view = bytesOfView(index);
+  const std::size_t element = component * width, offset = wholeNumber(place, "byteOffset"),
+                    given = wholeNumber(at("bufferViews", index), "byteStride"), stride = given > 0 ? given : element;
+  if (stride < element || stride > 65536)
+    throwBadInput("{}: buffer view {}: byteStride {} of elements of {} bytes", file_.string(), index, stride, element);
+  if (count > view.size() || offset > view.size() || element + (count - 1) * stride > view.size() - offset)
+    throwBadInput("{}: accessor {}: {} elements of {} bytes from byte {} of a buffer view of {} bytes", file_.string(),
+                  accessor, count, stride, offset, view.size());
+  return {view.subspan(offset), stride};
+}
+
+GltfNumbers GltfFile::numbers(std::size_t index, std::string_view types) const {
+  const Value accessor = at("accessors", index);
+  if (!accessor.json.is_object() || !accessor.has("type")) accessor.fail("an object with a type");
+  constexpr std::pair<std::string_view, std::size_t> kWidths[] = {
+      {"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT4", 16}};
+  const std::string type = accessor.at("type").text();
+  GltfNumbers numbers;
+  for (const auto& [name, width] : kWidths)
+    if (type == name && types.find(type) != std::string_view::npos) numbers.width = width;
+  if (numbers.width == 0) accessor.at("type").fail(types);
+  numbers.count = wholeNumber(accessor, "count");
+  if (numbers.count == 0) throwBadInput("{}: accessor {}: no elements", file_.string(), index);
+  const ComponentType component = componentTypeOf(accessor);
+  numbers.componentType_ = component.code;
+  numbers.normalized_ = accessor.has("normalized") && accessor.at("normalized").json == true && component.most > 0.0;
+  if (accessor.has("bufferView"))
+    numbers.elements_ = elementsAt(index, accessor, numbers.count, component.bytes, numbers.width);
+  else if (numbers.count > kMostZeroElements)
+    throwBadInput("{}: accessor {}: {} elements without a buffer view, at most {} are supported", file_.string(), index,
+                  numbers.count, kMostZeroElements);
+
+  if (!accessor.has("sparse")) return numbers;
+  const Value sparse = accessor.at("sparse");
+  for (const char* part : {"indices", "values"})
+    if (!sparse.json.is_object() || !sparse.has(part) || !sparse.at(part).json.is_object() ||
+        !sparse.at(part).has("bufferView"))
+      sparse.fail("an object with indices and values, each of a bufferView");
+  const std::size_t changed = wholeNumber(sparse, "count");
+  if (changed == 0) return numbers;
+  const ComponentType indexType = componentTypeOf(sparse.at("indices"));
+  if (indexType.isSigned) sparse.at("indices").at("componentType").fail("5121, 5123 or 5125");
+  const GltfNumbers::Elements places = elementsAt(index, sparse.at("indices"), changed, indexType.bytes, 1);
+  numbers.replacements_ = elementsAt(index, sparse.at("values"), changed, component.bytes, numbers.width);
+  for (std::size_t i = 0; i < changed; ++i) {
+    const auto to = static_cast<std::size_t>(numberAt(places.bytes.data() + i * places.stride, indexType));
+    if (to >= numbers.count)
+      throwBadInput("{}: accessor {}: a sparse element {}, it holds {}", file_.string(), index, to, numbers.count);
+    numbers.replaced_[to] = i;
+  }
+  return numbers;
+}
+
+double GltfNumbers::at(std::size_t element, std::size_t k) const {
+  const Elements* from = &elements_;
+  if (const auto found = replaced_.find(element); found != replaced_.end())
+    from = &replacements_, element = found->second;
+  if (from->bytes.empty()) return 0.0;
+  for (const ComponentType& type : kComponentTypes) {
+    if (type.code != componentType_) continue;
+    const double value = numberAt(from->bytes.data() + element * from->stride + k * type.bytes, type);
+    return normalized_ ? std::max(value / type.most, -1.0) : value;
+  }
+  return 0.0;
+}
+
+std::vector<std::uint32_t> GltfFile::indices(std::size_t index) const {
+  const Value accessor = at("accessors", index);
+  if (!accessor.json.is_object()) accessor.fail("an object {...}");
+  if (componentTypeOf(accessor).isSigned) accessor.at("componentType").fail("5121, 5123 or 5125, as of indices");
+  if (accessor.has("normalized") && accessor.at("normalized").json == true)
+    accessor.at("normalized").fail("false, as of indices");
+  const GltfNumbers read = numbers(index, "SCALAR");
+  std::vector<std::uint32_t> result;
+  result.reserve(read.count);
+  for (std::size_t i = 0; i < read.count; ++i) result.push_back(static_cast<std::uint32_t>(read.at(i, 0)));
+  return result;
 }
 
 }  // namespace lucerna

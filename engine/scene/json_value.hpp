@@ -18,6 +18,9 @@ namespace lucerna {
 
 using Json = nlohmann::json;
 
+/// Of radiance, irradiance and intensity. With more, sums of light would leave the range of floats.
+constexpr double kMostLight = 1e30;
+
 /// A value and its path, such as "cameras[1].fov", for messages.
 struct Value {
   const Json& json;
@@ -61,16 +64,18 @@ struct Value {
 
   glm::dvec3 unitVector() const {
     const glm::dvec3 v = vector("a direction: an array of 3 numbers");
-    if (!(glm::length(v) > 0.0)) fail("a direction other than zero");
-    return glm::normalize(v);
+    const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+    if (!(largest > 0.0)) fail("a direction other than zero");
+    return glm::normalize(v / largest);  // whose squares neither overflow nor vanish
   }
 
-  /// Radiance or irradiance: finite in float and not negative.
+  /// Radiance, irradiance or intensity, at most kMostLight.
   glm::vec3 light() const {
-    const glm::vec3 v(vector("an array of 3 numbers, 0 or more"));
+    const std::string expected = fmt::format("an array of 3 numbers from 0 to {:g}", kMostLight);
+    const glm::dvec3 v = vector(expected);
     for (int c = 0; c < 3; ++c)
-      if (!(v[c] >= 0.0f) || !std::isfinite(v[c])) fail("an array of 3 numbers, 0 or more");
-    return v;
+      if (!(v[c] >= 0.0 && v[c] <= kMostLight)) fail(expected);
+    return glm::vec3(v);
   }
 
   double numberBetween(double lowest, double highest, std::string_view expected) const {

@@ -1,13 +1,13 @@
-// Reads models through Assimp. Missing normals are made by it, smooth across edges up to kCreaseAngle. Lines and points
-// are dropped.
+// Reads models through Assimp. Lines and points are dropped, and the stand-in that it draws of a skeleton without
+// meshes. Where asked for triangles, missing normals are made by it, smooth across edges up to kCreaseAngle.
 #include "scene/model_import.hpp"
 
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "base/log.hpp"
-#include "scene/gltf_file.hpp"
 #include "scene/import_guard.hpp"
 
+#include <assimp/config.h>
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/MemoryIOWrapper.h>
 #include <assimp/postprocess.h>
@@ -34,8 +34,7 @@ glm::dmat4 toGlm(const aiMatrix4x4& m) {
       glm::dmat4(m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4, m.d1, m.d2, m.d3, m.d4));
 }
 
-/// File access for Assimp: replaces backslashes, serves the checked model from memory, and records missing material
-/// libraries (Assimp only logs them).
+/// File access for Assimp: replaces backslashes, and serves the checked model from memory.
 class ModelFiles : public Assimp::IOSystem {
  public:
   ModelFiles(std::string model, std::span<const std::uint8_t> content) : model_(std::move(model)), content_(content) {}
@@ -46,17 +45,8 @@ class ModelFiles : public Assimp::IOSystem {
   void Close(Assimp::IOStream* stream) override { delete stream; }
   Assimp::IOStream* Open(const char* file, const char* mode = "rb") override {
     if (model_ == file) return new Assimp::MemoryIOStream(content_.data(), content_.size());
-    const std::string path = withForwardSlashes(file);
-    Assimp::IOStream* stream = disk_.Open(path.c_str(), mode);
-    if (lowerExtension(path) == ".mtl") {
-      if (stream) foundMaterials = true;
-      else missingMaterials.push_back(path);
-    }
-    return stream;
+    return disk_.Open(withForwardSlashes(file).c_str(), mode);
   }
-
-  bool foundMaterials = false;
-  std::vector<std::string> missingMaterials;
 
  private:
   Assimp::DefaultIOSystem disk_;  ///< final since Assimp 6
@@ -104,25 +94,23 @@ void checkFacesOf(const aiScene& source, const fs::path& file) {
 
 }  // namespace
 
-ImportedModel::ImportedModel(const fs::path& file, std::span<const std::uint8_t> content)
+ImportedModel::ImportedModel(const fs::path& file, std::span<const std::uint8_t> content, Faces faces)
     : file_(file), importer_(std::make_unique<Assimp::Importer>()) {
-  auto* files = new ModelFiles(file.string(), content);  // owned by the importer; all file access goes through it
-  importer_->SetIOHandler(files);
+  importer_->SetIOHandler(new ModelFiles(file.string(), content));  // all file access goes through it
+  importer_->SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
   importer_->SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, kCreaseAngle);
   try {
     const ImportGuard guard(file);
     scene_ = importer_->ReadFile(file.string(), 0);
     if (scene_) checkNodesOf(*scene_, file);
     if (scene_) checkFacesOf(*scene_, file);
-    if (scene_) scene_ = importer_->ApplyPostProcessing(aiProcess_Triangulate | aiProcess_GenSmoothNormals);
+    if (scene_ && faces == Faces::triangles)
+      scene_ = importer_->ApplyPostProcessing(aiProcess_Triangulate | aiProcess_GenSmoothNormals);
   } catch (const Error&) { throw; } catch (const std::exception& e) {
     throwBadInput("{}: cannot be read as a model: {}", file.string(), e.what());
   }
   if (!scene_ || !scene_->mRootNode)
     throwBadInput("{}: cannot be read as a model: {}", file.string(), importer_->GetErrorString());
-  if (!files->foundMaterials && !files->missingMaterials.empty())
-    logWarning("{}: material library {} is missing; using default materials", file.string(),
-               files->missingMaterials.front());
 }
 
 ImportedModel::~ImportedModel() {
@@ -138,7 +126,9 @@ void ImportedModel::forEachMesh(const MeshVisitor& visit) const {
     const glm::dmat4 worldFromNode = worldFromParent * toGlm(node->mTransformation);
     for (unsigned i = 0; i < node->mNumMeshes; ++i) {
       const aiMesh& mesh = *scene_->mMeshes[node->mMeshes[i]];
-      if (mesh.mPrimitiveTypes & aiPrimitiveType_TRIANGLE)
+      const bool hasFaces = mesh.mPrimitiveTypes & (aiPrimitiveType_TRIANGLE | aiPrimitiveType_POLYGON);
+      const bool standsIn = material(mesh.mMaterialIndex).GetName() == aiString("SkeletonMaterial");
+      if (hasFaces && !standsIn)
         visit(mesh, worldFromNode, mesh.mName.length > 0 ? mesh.mName.C_Str() : node->mName.C_Str());
     }
     for (unsigned i = node->mNumChildren; i-- > 0;) open.emplace_back(node->mChildren[i], worldFromNode);
@@ -212,20 +202,6 @@ std::vector<Camera> ImportedModel::cameras() const {
     if (given.mAspect > 0.0f) camera.verticalFov = 2.0 * std::atan(std::tan(0.5 * horizontal) / given.mAspect);
   }
   return cameras;
-}
-
-MeshData meshData(const aiMesh& mesh, const std::string& name, unsigned texCoords) {
-  MeshData data;
-  data.name = name;
-  for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
-    data.positions.push_back(toGlm(mesh.mVertices[i]));
-    if (mesh.HasNormals()) data.normals.push_back(toGlm(mesh.mNormals[i]));
-    if (mesh.HasTextureCoords(texCoords)) data.texCoords.emplace_back(toGlm(mesh.mTextureCoords[texCoords][i]));
-  }
-  for (unsigned f = 0; f < mesh.mNumFaces; ++f)
-    if (const aiFace& face = mesh.mFaces[f]; face.mNumIndices == 3)
-      data.triangles.push_back({face.mIndices[0], face.mIndices[1], face.mIndices[2]});
-  return data;
 }
 
 std::optional<float> numberOf(const aiMaterial& material, const char* key, unsigned type, unsigned index) {

@@ -18,13 +18,18 @@ namespace lucerna {
 
 class ImportedModel {
  public:
+  enum class Faces {
+    triangles,
+    asTheyAre
+  };  ///< with normals where they are missing; polygons, and what normals there are
   /// `content`: of the file. Throws Error(badInput) naming the file if it cannot be read as a model.
-  ImportedModel(const std::filesystem::path& file, std::span<const std::uint8_t> content);
+  ImportedModel(const std::filesystem::path& file, std::span<const std::uint8_t> content,
+                Faces faces = Faces::triangles);
   ~ImportedModel();
   ImportedModel(const ImportedModel&) = delete;
   ImportedModel& operator=(const ImportedModel&) = delete;
 
-  /// Visits meshes with triangles, node by node, as placed by `worldFromNode`; `name`: the mesh's, or else the node's.
+  /// Visits meshes with faces, node by node, as placed by `worldFromNode`; `name`: the mesh's, or else the node's.
   using MeshVisitor = std::function<void(const aiMesh& mesh, const glm::dmat4& worldFromNode, const std::string& name)>;
   void forEachMesh(const MeshVisitor& visit) const;
   /// Throws Error(badInput) if the file has no such material.
@@ -41,12 +46,6 @@ class ImportedModel {
   const aiScene* scene_ = nullptr;
 };
 
-/// Its meshes and their materials, whatever the format.
-void readMeshes(Scene& scene, const ImportedModel& model);
-
-/// `texCoords`: which of the mesh's coordinates.
-MeshData meshData(const aiMesh& mesh, const std::string& name, unsigned texCoords = 0);
-
 /// Values of a material; empty if it has none of that key.
 std::optional<float> numberOf(const aiMaterial& material, const char* key, unsigned type, unsigned index);
 std::optional<glm::vec3> colourOf(const aiMaterial& material, const char* key, unsigned type, unsigned index,
@@ -54,13 +53,12 @@ std::optional<glm::vec3> colourOf(const aiMaterial& material, const char* key, u
 /// The picture of the first of these types that the material has; empty: it has none.
 std::string pictureOf(const aiMaterial& material, std::initializer_list<aiTextureType> types);
 
-// Parts of a material that formats share.
-/// Diffuse, specular and emitted colour, and exponent. `tint`: the vertices' colour, a factor on the base colour.
-Material colours(const aiMaterial& source, const glm::vec3& tint);
-/// Metallic-roughness. `map`: mean of its picture. Returns the base colour.
-glm::vec3 setMetallicRoughness(Material& material, const aiMaterial& source, const glm::vec3& tint,
-                               const glm::vec3& map, float transmission);
-void setEmission(Material& material, const aiMaterial& source, TextureLoader& textures, float strength);
+// Parts of a material.
+/// Diffuse, specular and emitted colour, and exponent.
+Material colours(const aiMaterial& source);
+/// Metallic-roughness. `map`: mean of its picture.
+void setMetallicRoughness(Material& material, const aiMaterial& source, const glm::vec3& map);
+void setEmission(Material& material, const aiMaterial& source, TextureLoader& textures);
 void setAlbedoAndMask(Material& material, const aiMaterial& source, TextureLoader& textures);
 
 }  // namespace lucerna

@@ -44,8 +44,9 @@ void appendLights(Scene& scene, std::span<const ModelLight> lights) {
 void appendCameras(Scene& scene, std::span<const Camera> cameras) {
   for (Camera camera : cameras) {
     const glm::dvec3 right = glm::cross(camera.direction, camera.up);
-    const bool usable =
-        isFinite(camera.position) && glm::length(right) > 0.0 && camera.verticalFov > 0.0 && camera.verticalFov < kPi;
+    const bool opens = camera.isOrthographic() ? std::isfinite(camera.orthographicHeight)
+                                               : camera.verticalFov > 0.0 && camera.verticalFov < kPi;
+    const bool usable = isFinite(camera.position) && glm::length(right) > 0.0 && opens;
     if (!usable) {
       logWarning("{}: camera '{}' has an invalid direction, up or field of view; ignored", scene.file.string(),
                  camera.name);

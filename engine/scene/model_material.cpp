@@ -18,10 +18,26 @@ float clampedNumber(float value, float low, float high, float fallback) {
   return std::isfinite(value) ? std::clamp(value, low, high) : fallback;
 }
 
-Material colours(const aiMaterial& source, const glm::vec3& tint) {
+void setMetallicRoughness(Material& material, const glm::vec3& base, float metallic, float roughness,
+                          float transmission) {
+  material.diffuse = base * (1.0f - metallic);
+  material.specular = glm::mix(glm::vec3(0.04f), base, metallic);
+  material.roughness = roughness * roughness;
+  if (transmission > 0.5f) material.bsdf = Bsdf::dielectric;
+}
+
+void setEmission(Material& material, const glm::vec3& radiance, int texture, const TextureLoader& textures) {
+  for (int c = 0; c < 3; ++c)
+    material.emissionScale[c] = clampedNumber(radiance[c], 0.0f, std::numeric_limits<float>::max(), 0.0f);
+  material.emissionTexture = texture;
+  material.emission = material.emissionScale;
+  if (texture >= 0) material.emission *= glm::vec3(meanColour(textures[texture]));
+}
+
+Material colours(const aiMaterial& source) {
   Material material;
   material.name = source.GetName().C_Str();
-  material.diffuse = colourOf(source, AI_MATKEY_COLOR_DIFFUSE).value_or(material.diffuse) * tint;
+  material.diffuse = colourOf(source, AI_MATKEY_COLOR_DIFFUSE).value_or(material.diffuse);
   material.specular = colourOf(source, AI_MATKEY_COLOR_SPECULAR).value_or(material.specular);
   material.emission =
       colourOf(source, AI_MATKEY_COLOR_EMISSIVE, std::numeric_limits<float>::max()).value_or(material.emission);
@@ -31,29 +47,22 @@ Material colours(const aiMaterial& source, const glm::vec3& tint) {
   return material;
 }
 
-glm::vec3 setMetallicRoughness(Material& material, const aiMaterial& source, const glm::vec3& tint,
-                               const glm::vec3& map, float transmission) {
+void setMetallicRoughness(Material& material, const aiMaterial& source, const glm::vec3& map) {
   // glTF's picture: roughness in green, metallic in blue.
   const float metallic =
       clampedNumber(numberOf(source, AI_MATKEY_METALLIC_FACTOR).value_or(0.0f) * map.z, 0.0f, 1.0f, 0.0f);
   const float roughness =
       clampedNumber(numberOf(source, AI_MATKEY_ROUGHNESS_FACTOR).value_or(1.0f) * map.y, 0.0f, 1.0f, 1.0f);
-  const std::optional<glm::vec3> given = colourOf(source, AI_MATKEY_BASE_COLOR);
-  const glm::vec3 base = tint * given.value_or(colourOf(source, AI_MATKEY_COLOR_DIFFUSE).value_or(glm::vec3(1.0f)));
-  material.diffuse = base * (1.0f - metallic);
-  material.specular = glm::mix(glm::vec3(0.04f), base, metallic);
-  material.roughness = roughness * roughness;
-  if (transmission > 0.5f) material.bsdf = Bsdf::dielectric;
-  return base;
+  const std::optional<glm::vec3> base = colourOf(source, AI_MATKEY_BASE_COLOR);
+  setMetallicRoughness(material, base.value_or(colourOf(source, AI_MATKEY_COLOR_DIFFUSE).value_or(glm::vec3(1.0f))),
+                       metallic, roughness, numberOf(source, AI_MATKEY_TRANSMISSION_FACTOR).value_or(0.0f));
 }
 
-void setEmission(Material& material, const aiMaterial& source, TextureLoader& textures, float strength) {
+void setEmission(Material& material, const aiMaterial& source, TextureLoader& textures) {
   if (material.emission == glm::vec3(0.0f)) return;
-  material.emissionScale = material.emission * clampedNumber(strength, 0.0f, 1e30f, 1.0f);
-  material.emissionTexture =
-      textures.optional(pictureOf(source, {aiTextureType_EMISSIVE, aiTextureType_EMISSION_COLOR}));
-  material.emission = material.emissionScale;
-  if (material.emissionTexture >= 0) material.emission *= glm::vec3(meanColour(textures[material.emissionTexture]));
+  const float strength = numberOf(source, AI_MATKEY_EMISSIVE_INTENSITY).value_or(1.0f);
+  setEmission(material, material.emission * clampedNumber(strength, 0.0f, 1e30f, 1.0f),
+              textures.optional(pictureOf(source, {aiTextureType_EMISSIVE, aiTextureType_EMISSION_COLOR})), textures);
 }
 
 void setAlbedoAndMask(Material& material, const aiMaterial& source, TextureLoader& textures) {

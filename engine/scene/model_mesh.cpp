@@ -1,7 +1,6 @@
 // Meshes of models: triangles in one vertex and one index buffer.
 // - Triangles with positions that are not finite are dropped and counted (Scene::droppedTriangles). Triangles of zero
-//   area are counted (Scene::degenerateTriangles) and kept: Crytek Sponza has one, and its published count of 262,267
-//   should be met.
+//   area are counted (Scene::degenerateTriangles) and kept: published counts should be met, Crytek Sponza's of 262,267.
 // - Vertices of a mesh are merged if all their floats are equal, bit by bit: no tolerance, so that scenes of any scale
 //   keep their shape.
 #include "scene/model_parts.hpp"

@@ -21,7 +21,16 @@ inline bool isFinite(const glm::dvec3& v) { return std::isfinite(v.x) && std::is
 /// File names as Windows exporters write them.
 std::string withForwardSlashes(std::string path);
 
+/// The file that a model names: relative to it; if the path is from another machine, the bare name beside it, also in
+/// other letters of upper and lower case. Where there is none, the first of these.
+std::filesystem::path fileBeside(const std::filesystem::path& model, const std::string& name);
+
 float clampedNumber(float value, float low, float high, float fallback);
+
+/// Diffuse and specular colour and scattering by base colour, metallic share and roughness (glTF's: the root of GGX's
+/// alpha).
+void setMetallicRoughness(Material& material, const glm::vec3& base, float metallic, float roughness,
+                          float transmission);
 
 /// Mean over all texels, encoded values in 0..1.
 glm::vec3 meanValue(const Bitmap& bitmap);
@@ -38,6 +47,8 @@ class TextureLoader {
   int albedo(const std::string& name);
   /// Index of a picture that only refines the material: -1 also if it cannot be read.
   int optional(const std::string& name);
+  /// The same of a picture that is kept only if `isWanted`.
+  int optionalIf(const std::string& name, bool (*isWanted)(const Bitmap&));
   /// The mean of a picture that is not kept, encoded values in 0..1; 1 without a picture.
   glm::vec3 mean(const std::string& name);
   /// An albedo map whose alpha is shifted so that `threshold` becomes 0.5, the cut-off of masks. The cut stays at the
@@ -49,7 +60,6 @@ class TextureLoader {
  private:
   int load(const std::string& name);
   std::optional<Texture> read(const std::string& name);
-  std::filesystem::path resolve(const std::string& name) const;
   int checker();
 
   Scene& scene_;
@@ -60,16 +70,23 @@ class TextureLoader {
   int checker_ = -1;
 };
 
+/// Maximum depth of nodes: importers recurse once per level.
+inline constexpr int kMostNodeDepth = 1000;
+
 /// A mesh as its file has it. Without normals or texture coordinates these are empty.
 struct MeshData {
   std::string name;
-  std::vector<glm::vec3> positions, normals;
+  std::vector<glm::dvec3> positions;
+  std::vector<glm::vec3> normals;
   std::vector<glm::vec2> texCoords;  ///< (0, 0) is the lower left corner of a picture
   std::vector<std::array<unsigned, 3>> triangles;
 };
 
 /// Appends one mesh as placed by one node.
 void appendMesh(Scene& scene, const MeshData& source, const glm::dmat4& worldFromNode, int material);
+
+/// `radiance`: where the picture is white; texture -1: none.
+void setEmission(Material& material, const glm::vec3& radiance, int texture, const TextureLoader& textures);
 
 /// A light as its file has it, in world space.
 struct ModelLight {
@@ -93,7 +110,10 @@ struct ModelViews {
   std::vector<Camera> cameras;
 };
 
-/// glTF. `content`: of scene.file.
+/// Readers of formats. `content`: of scene.file.
 ModelViews readGltf(Scene& scene, std::span<const std::uint8_t> content);
+void readObj(Scene& scene, std::span<const std::uint8_t> content);
+void readPly(Scene& scene, std::span<const std::uint8_t> content);
+void readStl(Scene& scene, std::span<const std::uint8_t> content);
 
 }  // namespace lucerna

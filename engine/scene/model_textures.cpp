@@ -5,6 +5,7 @@
 #include "base/log.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 namespace lucerna {
@@ -31,6 +32,23 @@ std::string withForwardSlashes(std::string path) {
   return path;
 }
 
+fs::path fileBeside(const fs::path& model, const std::string& name) {
+  const fs::path folder = model.parent_path(), path = (folder / withForwardSlashes(name)).lexically_normal(),
+                 bare = folder / path.filename();
+  std::error_code error;
+  if (fs::exists(path, error)) return path;
+  if (fs::exists(bare, error)) return bare;
+  const auto lower = [](std::string text) {
+    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return text;
+  };
+  const std::string wanted = lower(path.filename().string());
+  for (const fs::path& place : {path.parent_path(), folder})
+    for (const auto& entry : fs::directory_iterator(place.empty() ? fs::path(".") : place, error))
+      if (lower(entry.path().filename().string()) == wanted) return entry.path();
+  return path;
+}
+
 glm::vec3 meanValue(const Bitmap& bitmap) {
   glm::dvec3 sum(0.0);
   for (std::size_t i = 0; i < bitmap.rgba.size(); i += 4)
@@ -45,6 +63,16 @@ int TextureLoader::albedo(const std::string& name) {
 }
 
 int TextureLoader::optional(const std::string& name) { return name.empty() ? -1 : load(name); }
+
+int TextureLoader::optionalIf(const std::string& name, bool (*isWanted)(const Bitmap&)) {
+  if (const auto known = indices_.find(name); known != indices_.end())
+    return known->second >= 0 && isWanted((*this)[known->second]) ? known->second : -1;
+  std::optional<Texture> texture = read(name);
+  if (!texture || !isWanted(texture->bitmap)) return -1;
+  const int index = indices_[name] = static_cast<int>(scene_.textures.size());
+  scene_.textures.push_back(std::move(*texture));
+  return index;
+}
 
 glm::vec3 TextureLoader::mean(const std::string& name) {
   if (name.empty()) return glm::vec3(1.0f);
@@ -79,7 +107,7 @@ std::optional<Texture> TextureLoader::read(const std::string& name) {
   try {
     const fs::path label = scene_.file.string() + ":" + name;
     if (std::optional<Bitmap> embedded = embedded_(name, label)) return Texture{label, std::move(*embedded)};
-    const fs::path file = resolve(name);
+    const fs::path file = fileBeside(scene_.file, name);
     return Texture{file, readBitmap(file)};
   } catch (const Error& e) {
     if (std::find(unreadable_.begin(), unreadable_.end(), name) == unreadable_.end()) {
@@ -88,15 +116,6 @@ std::optional<Texture> TextureLoader::read(const std::string& name) {
     }
     return std::nullopt;
   }
-}
-
-/// Relative to the model; if the path is from another machine, the bare file name next to the model.
-fs::path TextureLoader::resolve(const std::string& name) const {
-  const fs::path folder = scene_.file.parent_path();
-  const fs::path path = (folder / withForwardSlashes(name)).lexically_normal();
-  const fs::path bare = folder / path.filename();
-  std::error_code error;
-  return !fs::exists(path, error) && fs::exists(bare, error) ? bare : path;
 }
 
 int TextureLoader::checker() {

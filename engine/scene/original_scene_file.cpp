@@ -3,6 +3,7 @@
 #include "base/angles.hpp"
 #include "base/files.hpp"
 #include "scene/media_catalogue.hpp"
+#include "scene/mtl_file.hpp"
 #include "scene/scene_file.hpp"
 #include "scene/scene_media.hpp"
 
@@ -113,16 +114,17 @@ std::string restOf(const std::string& line, const std::string& firstWord) {
 }
 
 /// The materials of all libraries named by an OBJ, in order; unreadable ones are left out (the loader has warned).
-std::vector<std::string> materialNames(const fs::path& obj) {
+std::vector<MtlMaterial> materialsBeside(const fs::path& obj) {
   std::istringstream text(readFileText(obj));
-  std::vector<std::string> names;
+  std::vector<MtlMaterial> materials;
   for (std::string line; std::getline(text, line);) {
     if (line.rfind("mtllib", 0) != 0) continue;
     const fs::path library = obj.parent_path() / restOf(line, "mtllib");
     if (!fs::is_regular_file(library)) continue;
-    for (const MtlEntry& entry : readMtl(library)) names.push_back(entry.name);
+    std::set<std::string> ignored;
+    for (MtlMaterial& material : readMtl(readFileText(library), ignored)) materials.push_back(std::move(material));
   }
-  return names;
+  return materials;
 }
 
 /// The material for an ID; empty if there is none.
@@ -152,13 +154,22 @@ Scene loadOriginalScene(const Value& root) {
   scene.spots.clear();
   scene.points = {keys.light};
   scene.cameras = {keys.camera};
+  scene.points[0].position -= scene.origin;
+  scene.cameras[0].position -= scene.origin;
   scene.keyFrames.clear();
   for (Material& material : scene.materials) {
     material.bsdf = Bsdf::diffuse;
+    material.opacity = 1.0f;
     material.emission = glm::vec3(0.0f);
     material.specular = glm::vec3(0.0f);
   }
-  std::vector<std::string> names = materialNames(model);
+  std::vector<std::string> names;
+  for (const MtlMaterial& mtl : materialsBeside(model)) {
+    names.push_back(mtl.name);
+    for (Material& material : scene.materials)  // Lambert's surfaces, without a coat
+      if (material.name == mtl.name && mtl.diffuse)
+        material.diffuse = glm::clamp(*mtl.diffuse, glm::vec3(0.0f), glm::vec3(1.0f));
+  }
   if (names.empty())  // no MTL: only the names in the OBJ are known
     for (const Material& material : scene.materials) names.push_back(material.name);
   for (const auto& [id, published] : media) {
@@ -232,7 +243,8 @@ std::pair<std::string, std::vector<std::string>> draftOriginalScene(const fs::pa
   if (fs::exists(model)) {
     const Scene scene = loadModel(model);
     camera = scene.cameras.front();
-    target = scene.bounds.centre();
+    camera.position += scene.origin;
+    target = scene.bounds.centre() + scene.origin;
     radius = 0.5 * glm::length(scene.bounds.extent());
     report.push_back(fmt::format("camera and light look at {}", model.string()));
   } else {

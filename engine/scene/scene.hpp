@@ -9,6 +9,7 @@
 
 #include <glm/glm.hpp>
 
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -125,17 +126,24 @@ struct PointLight {
 /// A spot light has one perspective shadow map, so its cone must be well below a half space: 80 degrees.
 inline constexpr double kLargestSpotAngle = 80.0 * 3.14159265358979323846 / 180.0;
 
-/// A view of the scene. Positions in double, for precision far from the origin.
+/// A view of the scene, in perspective or, from glTF files, orthographic. Positions in double, for precision far from
+/// the origin.
 struct Camera {
   std::string name;
   glm::dvec3 position{0.0};
   glm::dvec3 direction{0.0, 0.0, -1.0};  ///< unit
   glm::dvec3 up{0.0, 1.0, 0.0};  ///< unit, not parallel to direction
-  double verticalFov = 0.9;  ///< radians
+  double verticalFov = 0.9;  ///< radians; not read of an orthographic view
+  double orthographicHeight = 0.0;  ///< above 0: an orthographic view of this height, scene units, whose rays are
+                                    ///< parallel to `direction` and start in the plane through `position`
+
+  bool isOrthographic() const { return orthographicHeight > 0.0; }
+  /// Half the height of the view at distance 1 along it; of an orthographic one, at any distance.
+  double halfHeight() const { return isOrthographic() ? 0.5 * orthographicHeight : std::tan(0.5 * verticalFov); }
 
   bool seesAs(const Camera& other) const {
     return position == other.position && direction == other.direction && up == other.up &&
-           verticalFov == other.verticalFov;
+           verticalFov == other.verticalFov && orthographicHeight == other.orthographicHeight;
   }
 };
 
@@ -165,14 +173,15 @@ struct Scene {
                                            ///< in the irradiance cache
   std::vector<Camera> cameras;  ///< never empty after loading: the first is the default view
   Bounds bounds;
+  glm::dvec3 origin{0.0};  ///< taken off all positions, in double: places in files and options are places here + origin
   double metresPerUnit = 1.0;
   glm::vec3 background{0.0f};  ///< radiance visible where there is neither surface nor environment; it lights nothing
   float exposure = 1.0f;  ///< multiplies radiance before tone mapping
   bool defaultExposure = false;  ///< no file has one: it is chosen for the view (setDefaultExposure)
   std::filesystem::path keyFrames;  ///< the walk's camera path; empty: none named
   std::size_t degenerateTriangles =
-      0;  ///< of zero area, kept so that counts agree with the file's (Crytek Sponza has one):
-          ///< code that divides by an area or normalises a face normal must expect them
+      0;  ///< of zero area, kept so that counts agree with the file's: code that divides by an area or normalises a
+          ///< face normal must expect them
   std::size_t droppedTriangles = 0;  ///< left out while loading: a position is not finite
 
   std::size_t triangleCount() const { return indices.size() / 3; }

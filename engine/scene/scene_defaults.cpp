@@ -1,5 +1,6 @@
 // What files leave out.
-// - No light: a sun, over the shoulder of a view that we chose, otherwise slanted to suit courtyards and halls; and its
+// - No light, not even of emissive surfaces: a sun, over the shoulder of a view that we chose, otherwise slanted to
+// suit courtyards and halls; and its
 //   clear sky (set in loadScene, as the sun may still be turned).
 // - No camera: the first key of keyFrames/<stem>.txt if the repository has one, otherwise a view from outside that
 //   frames the bounding sphere.
@@ -34,14 +35,44 @@ const glm::vec3 kDefaultSunIrradiance(10.0f, 9.6f, 9.0f);
 /// Match that sun and its sky, some 12 W/unit^2: white stands at 0.4 * 0.8 * 12 / pi = 1.2 before the tone curve.
 const float kExposureOutside = 0.4f, kExposureInside = 3.0f;
 
-/// Whether the bounding sphere of the bounds intersects the cone around the view's corners, for a 16:9 picture.
+/// Whether the bounding sphere of the bounds intersects the cone around the view's corners, for a 16:9 picture; of an
+/// orthographic view, the cylinder around them.
 bool seesAnything(const Camera& camera, const Bounds& bounds) {
   const glm::dvec3 away = bounds.centre() - camera.position;
   const double distance = glm::length(away), radius = 0.5 * glm::length(bounds.extent());
   if (distance <= radius) return true;
-  const double corner = std::atan(std::tan(0.5 * camera.verticalFov) * std::hypot(1.0, 16.0 / 9.0));
+  const double toCorner = camera.halfHeight() * std::hypot(1.0, 16.0 / 9.0);
+  if (camera.isOrthographic()) {
+    const double along = glm::dot(away, camera.direction);
+    return along >= -radius && glm::length(away - along * camera.direction) <= radius + toCorner;
+  }
+  const double corner = std::atan(toCorner);
   return std::acos(std::clamp(glm::dot(away, camera.direction) / distance, -1.0, 1.0)) - std::asin(radius / distance) <
          corner;
+}
+
+double areaOf(const Scene& scene, const Mesh& mesh) {
+  double sum = 0.0;
+  for (std::uint32_t i = mesh.firstIndex; i < mesh.firstIndex + mesh.indexCount; i += 3) {
+    const auto corner = [&](std::uint32_t k) { return glm::dvec3(scene.vertices[scene.indices[i + k]].position); };
+    sum += 0.5 * glm::length(glm::cross(corner(1) - corner(0), corner(2) - corner(0)));
+  }
+  return sum;
+}
+
+double strongest(const glm::vec3& v) { return static_cast<double>(std::max({v.x, v.y, v.z})); }
+
+/// Whether emissive surfaces are a scene's light rather than its pilot lamps: a thousandth of its area.
+bool isLitByEmission(const Scene& scene) {
+  double all = 0.0, emissive = 0.0;
+  for (const Mesh& mesh : scene.meshes) {
+    const Material& material = scene.materials[static_cast<std::size_t>(mesh.material)];
+    const double area = areaOf(scene, mesh), emission = strongest(material.emission);
+    all += area;
+    if (emission > 0.0)
+      emissive += area * (material.emissionTexture >= 0 ? emission / strongest(material.emissionScale) : 1.0);
+  }
+  return emissive > 1e-3 * all;
 }
 
 Camera outsideView(const Bounds& bounds) {
@@ -57,8 +88,14 @@ Camera outsideView(const Bounds& bounds) {
 
 }  // namespace
 
+std::vector<KeyFrame> keyFramesOf(const Scene& scene, const fs::path& file) {
+  std::vector<KeyFrame> keys = readKeyFrames(file);
+  for (KeyFrame& key : keys) key.position -= scene.origin;
+  return keys;
+}
+
 void setKeyFrames(Scene& scene, const fs::path& file) {
-  const std::vector<KeyFrame> keys = readKeyFrames(file);
+  const std::vector<KeyFrame> keys = keyFramesOf(scene, file);
   scene.keyFrames = file;
   if (!scene.cameras.empty()) return;
   Camera camera = Spline(keys).view(0);
@@ -67,7 +104,7 @@ void setKeyFrames(Scene& scene, const fs::path& file) {
 }
 
 void setDefaultSun(Scene& scene) {
-  if (scene.sun || !scene.spots.empty() || !scene.points.empty()) return;
+  if (scene.sun || !scene.spots.empty() || !scene.points.empty() || isLitByEmission(scene)) return;
   scene.sun = DirectionalLight{kDefaultSunDirection, kDefaultSunIrradiance};
   scene.defaultSun = true;
   scene.defaultExposure = true;
@@ -106,7 +143,6 @@ void setDefaultSky(Scene& scene) {
 
 void setExposureForLamps(Scene& scene) {
   if (scene.defaultSun) return;
-  const auto strongest = [](const glm::vec3& v) { return static_cast<double>(std::max({v.x, v.y, v.z})); };
   const double radius = 0.5 * glm::length(scene.bounds.extent());
   const auto lamp = [&](const glm::dvec3& position, const glm::vec3& intensity) {
     const double distance = std::max(glm::length(position - scene.bounds.centre()), radius);

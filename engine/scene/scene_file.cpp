@@ -20,6 +20,7 @@
 //                      "radiance": a factor (1)}: a clear sky for the sun's position, which must be above the horizon
 //                  (scene/clear_sky.hpp); or null for none. Without the key, the default sun has its clear sky.
 //   "media", "materials", "cameraMedium": see scene_media.hpp
+// Places are in the model's coordinates, also where an offset is taken off those (Scene::origin).
 // A top-level key "scene" marks the JSON of the VPT original instead: see original_scene_file.cpp.
 // Unknown keys are errors. A new key is one more entry in the table in loadSceneFile.
 #include "scene/scene_file.hpp"
@@ -151,13 +152,12 @@ bool checkRadiance(const Image& picture, const std::filesystem::path& file, cons
   for (int y = 0; y < picture.height; ++y)
     for (int x = 0; x < picture.width; ++x) {
       const glm::vec3& texel = picture.at(x, y);
-      const auto isRadiance = [](float v) { return v >= 0.0f && std::isfinite(v); };
+      const auto isRadiance = [](float v) { return v >= 0.0f && static_cast<double>(v) <= kMostLight; };
       for (int c = 0; c < 3; ++c)
         if (!isRadiance(texel[c]) || !isRadiance(texel[c] * factor[c]))
           throwBadInput(
-              "{}: texel {}, {} (column and row, from the upper left) is {} {} {}: radiance must be finite and at "
-              "least 0{}",
-              file.string(), x, y, texel.x, texel.y, texel.z,
+              "{}: texel {}, {} (column and row, from the upper left) is {} {} {}: radiance must be from 0 to {:g}{}",
+              file.string(), x, y, texel.x, texel.y, texel.z, kMostLight,
               factor == glm::vec3(1.0f) ? "" : ", also times the environment's \"radiance\"");
       lights = lights || texel * factor != glm::vec3(0.0f);
     }
@@ -249,9 +249,17 @@ Scene loadSceneFile(const std::filesystem::path& file) {
   Scene scene = loadModel(model);
   scene.name = file.stem().string();
   scene.file = file;
+  // Places in the file are as in the model's.
+  for (Camera& camera : cameras) camera.position -= scene.origin;
   if (scale) scene.metresPerUnit = *scale / 1000.0;
-  if (spots) scene.spots = *spots;
-  if (points) scene.points = *points;
+  if (spots) {
+    scene.spots = *spots;
+    for (SpotLight& light : scene.spots) light.position -= scene.origin;
+  }
+  if (points) {
+    scene.points = *points;
+    for (PointLight& light : scene.points) light.position -= scene.origin;
+  }
   if (sun || (scene.defaultSun && (spots || points))) {
     scene.sun = sun ? *sun : std::nullopt;
     scene.defaultSun = false;

@@ -1,17 +1,16 @@
-// Loads scenes. The readers of formats: glTF (gltf_reader.cpp), and here all others that Assimp knows. What they share:
-// pictures (model_textures.cpp), materials (model_material.cpp), meshes (model_mesh.cpp), lights and cameras
-// (model_lights.cpp), Assimp itself (model_import.cpp). What files leave out: scene_defaults.cpp.
-//
-// Decisions where MTL is silent:
-// - A material with opacity 0 would be invisible; exporters that mix up `d` and `Tr` write it for solid things, so it
-//   counts as 1.
-// - illum 5 is a mirror of Ks; illum 4, 6, 7 and 9 with an Ni are a smooth dielectric of that index (Ni 1: a boundary
-//   without effect).
+// Loads scenes. The readers of formats: glTF (gltf_reader.cpp), OBJ and MTL (obj_reader.cpp, mtl_file.cpp), PLY
+// (ply_reader.cpp), STL (stl_reader.cpp), and here all others that Assimp knows. What they share: pictures
+// (model_textures.cpp), materials (model_material.cpp), polygons (polygon_mesh.cpp), meshes (model_mesh.cpp), lights
+// and cameras (model_lights.cpp), Assimp itself (model_import.cpp). What files leave out: scene_defaults.cpp.
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "base/log.hpp"
+#include "scene/json_value.hpp"
 #include "scene/model_import.hpp"
+#include "scene/polygon_mesh.hpp"
 #include "scene/scene_file.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -36,17 +35,6 @@ void checkOff(const fs::path& file, std::span<const std::uint8_t> content) {
                   faces, content.size());
 }
 
-void setIllum(Material& material, const aiMaterial& source) {
-  int illum = 0;
-  if (source.Get("$mat.illum", 0, 0, illum) != aiReturn_SUCCESS) return;
-  const float index = numberOf(source, AI_MATKEY_REFRACTI).value_or(0.0f);
-  if (illum == 5 && material.specular != glm::vec3(0.0f)) material.bsdf = Bsdf::mirror;
-  if ((illum == 4 || illum == 6 || illum == 7 || illum == 9) && std::isfinite(index) && index >= 1.0f) {
-    material.bsdf = Bsdf::dielectric;
-    material.ior = index;
-  }
-}
-
 void setOpacity(Material& material, const aiMaterial& source, const fs::path& file) {
   material.opacity = clampedNumber(numberOf(source, AI_MATKEY_OPACITY).value_or(1.0f), 0.0f, 1.0f, 1.0f);
   if (material.opacity > 0.0f) return;
@@ -55,65 +43,120 @@ void setOpacity(Material& material, const aiMaterial& source, const fs::path& fi
 }
 
 Material readMaterial(const aiMaterial& source, TextureLoader& textures, const fs::path& file) {
-  Material material = colours(source, glm::vec3(1.0f));
+  Material material = colours(source);
   if (numberOf(source, AI_MATKEY_METALLIC_FACTOR))
-    setMetallicRoughness(material, source, glm::vec3(1.0f),
-                         textures.mean(pictureOf(source, {aiTextureType_METALNESS, aiTextureType_UNKNOWN})),
-                         numberOf(source, AI_MATKEY_TRANSMISSION_FACTOR).value_or(0.0f));
-  setIllum(material, source);
-  setEmission(material, source, textures, numberOf(source, AI_MATKEY_EMISSIVE_INTENSITY).value_or(1.0f));
+    setMetallicRoughness(material, source,
+                         textures.mean(pictureOf(source, {aiTextureType_METALNESS, aiTextureType_UNKNOWN})));
+  setEmission(material, source, textures);
   setOpacity(material, source, file);
   setAlbedoAndMask(material, source, textures);
   return material;
 }
 
-/// All formats but glTF.
-ModelViews readOther(Scene& scene, std::vector<std::uint8_t> content) {
-  const std::string extension = lowerExtension(scene.file);
-  if (extension == ".obj") {
-    const std::string_view text(reinterpret_cast<const char*>(content.data()), content.size());
-    checkObj(scene.file, text);
-    const std::string repaired = repairedObj(text);
-    content.assign(repaired.begin(), repaired.end());
+/// What a file without materials gets from Assimp, by name: white with a white highlight, or grey with a grey one.
+bool isDefault(const aiMaterial& source) { return source.GetName() == aiString(AI_DEFAULT_MATERIAL_NAME); }
+
+PolygonMesh polygonsOf(const aiMesh& mesh, const glm::dmat4& worldFromNode, const std::string& name, bool coloured) {
+  PolygonMesh polygons;
+  polygons.name = name;
+  const glm::dmat3 linear(worldFromNode);
+  const double side = glm::determinant(linear) < 0.0 ? -1.0 : 1.0;  // mirrored
+  const glm::dmat3 cofactor(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
+                            glm::cross(linear[0], linear[1]));
+  for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
+    const auto vector = [](const aiVector3D& v) { return glm::dvec3(v.x, v.y, v.z); };
+    polygons.positions.emplace_back(worldFromNode * glm::dvec4(vector(mesh.mVertices[i]), 1.0));
+    if (mesh.HasNormals()) {
+      const glm::dvec3 normal = side * (cofactor * vector(mesh.mNormals[i]));
+      const double length = glm::length(normal);
+      polygons.normals.emplace_back(length > 0.0 && std::isfinite(length) ? normal / length : glm::dvec3(0.0));
+    }
+    if (mesh.HasTextureCoords(0)) polygons.texCoords.emplace_back(vector(mesh.mTextureCoords[0][i]));
+    if (coloured) {
+      const aiColor4D& c = mesh.mColors[0][i];
+      polygons.colours.emplace_back(linearFromSrgb(clampedNumber(c.r, 0.0f, 1.0f, 1.0f)),
+                                    linearFromSrgb(clampedNumber(c.g, 0.0f, 1.0f, 1.0f)),
+                                    linearFromSrgb(clampedNumber(c.b, 0.0f, 1.0f, 1.0f)));
+    }
   }
+  for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+    const aiFace& face = mesh.mFaces[f];
+    if (face.mNumIndices < 3) continue;
+    for (unsigned k = 0; k < face.mNumIndices; ++k)
+      polygons.corners.push_back(face.mIndices[side > 0.0 ? k : face.mNumIndices - 1 - k]);
+    polygons.endFace();
+  }
+  return polygons;
+}
+
+/// The model library keeps positions in single precision, also where a file has more.
+void warnOfPrecision(const Scene& scene) {
+  if (scene.bounds.empty()) return;
+  const glm::dvec3 extent = scene.bounds.extent(), low = glm::abs(scene.bounds.min), high = glm::abs(scene.bounds.max);
+  const double step = std::max({low.x, low.y, low.z, high.x, high.y, high.z}) * 0x1p-23;
+  if (std::max({extent.x, extent.y, extent.z}) < 0x1p14 * step)
+    logWarning("{}: so far from the origin, positions in single precision are {:.2g} apart", scene.file.string(), step);
+}
+
+/// Formats without a reader of their own. Vertex colours are the colour of what has no material.
+ModelViews readOther(Scene& scene, std::span<const std::uint8_t> content) {
+  if (lowerExtension(scene.file) == ".off") checkOff(scene.file, content);
+  const ImportedModel model(scene.file, content, ImportedModel::Faces::asTheyAre);
+  TextureLoader textures(scene, model.embedded());
+  std::map<std::pair<unsigned, bool>, int> materialOf;  // those in use
+  std::vector<PolygonMesh> meshes;
+  model.forEachMesh([&](const aiMesh& mesh, const glm::dmat4& worldFromNode, const std::string& name) {
+    const aiMaterial& source = model.material(mesh.mMaterialIndex);
+    const bool isPlain = isDefault(source), coloured = isPlain && mesh.HasVertexColors(0);
+    const auto [material, isNew] =
+        materialOf.try_emplace({mesh.mMaterialIndex, coloured}, static_cast<int>(scene.materials.size()));
+    if (isNew && isPlain) {
+      Material& plain = scene.materials.emplace_back();
+      plain.name = AI_DEFAULT_MATERIAL_NAME;
+      plain.diffuse = glm::vec3(coloured ? 1.0f : kDefaultAlbedo);
+    } else if (isNew) {
+      scene.materials.push_back(readMaterial(source, textures, scene.file));
+    }
+    meshes.push_back(polygonsOf(mesh, worldFromNode, name, coloured));
+    meshes.back().material = material->second;
+  });
+  appendPolygons(scene, std::move(meshes));
+  warnOfPrecision(scene);
+  ModelViews views{model.lights(), model.cameras()};
+  for (ModelLight& light : views.lights) light.position -= scene.origin;
+  for (Camera& camera : views.cameras) camera.position -= scene.origin;
+  return views;
+}
+
+ModelViews readModel(Scene& scene, std::span<const std::uint8_t> content) {
+  const std::string extension = lowerExtension(scene.file);
+  const std::string_view text(reinterpret_cast<const char*>(content.data()), content.size());
   if (content.empty()) throwBadInput("{}: the file is empty", scene.file.string());
-  if (extension == ".off") checkOff(scene.file, content);
-  const ImportedModel model(scene.file, content);
-  readMeshes(scene, model);
-  return {model.lights(), model.cameras()};
+  if (extension == ".gltf" || extension == ".glb" || extension == ".vrm" || text.starts_with("glTF"))
+    return readGltf(scene, content);
+  if (extension == ".obj") return readObj(scene, content), ModelViews{};
+  if (extension == ".ply") return readPly(scene, content), ModelViews{};
+  if (extension == ".stl") return readStl(scene, content), ModelViews{};
+  return readOther(scene, content);
 }
 
 }  // namespace
-
-void readMeshes(Scene& scene, const ImportedModel& model) {
-  TextureLoader textures(scene, model.embedded());
-  std::map<unsigned, int> materialOf;  // those in use
-  model.forEachMesh([&](const aiMesh& mesh, const glm::dmat4& worldFromNode, const std::string& name) {
-    const aiMaterial& source = model.material(mesh.mMaterialIndex);
-    const auto [material, isNew] =
-        materialOf.try_emplace(mesh.mMaterialIndex, static_cast<int>(scene.materials.size()));
-    if (isNew) scene.materials.push_back(readMaterial(source, textures, scene.file));
-    appendMesh(scene, meshData(mesh, name), worldFromNode, material->second);
-  });
-}
 
 Scene loadModel(const fs::path& file) {
   Scene scene;
   scene.name = file.stem().string();
   scene.file = file;
-  std::vector<std::uint8_t> content = readFileBytes(file);  // also tells a missing file or a folder
-  const std::string extension = lowerExtension(file);
-  const bool isGltf = extension == ".gltf" || extension == ".glb";
-  if (isGltf && content.empty()) throwBadInput("{}: the file is empty", file.string());
-  const ModelViews views = isGltf ? readGltf(scene, content) : readOther(scene, std::move(content));
+  const ModelViews views = readModel(scene, readFileBytes(file));  // also tells a missing file or a folder
 
-  if (scene.indices.empty())
-    throwBadInput("{}: nothing to draw: no triangles ({} dropped as not finite)", file.string(),
+  if (scene.indices.empty() && scene.droppedTriangles > 0)
+    throwBadInput("{}: nothing to draw: none of its {} triangles has finite positions (up to 3.4e38)", file.string(),
                   scene.droppedTriangles);
+  if (scene.indices.empty()) throwBadInput("{}: nothing to draw: it has no triangles", file.string());
   if (scene.degenerateTriangles == scene.triangleCount())
     throwBadInput("{}: nothing to draw: all triangles have zero area", file.string());
   if (scene.droppedTriangles > 0)
-    logWarning("{}: {} triangles with positions that are not finite ignored", file.string(), scene.droppedTriangles);
+    logWarning("{}: {} triangles with positions that are not finite (up to 3.4e38) ignored", file.string(),
+               scene.droppedTriangles);
 
   appendLights(scene, views.lights);
   setDefaultSun(scene);
@@ -122,12 +165,48 @@ Scene loadModel(const fs::path& file) {
   return scene;
 }
 
+namespace {
+
+/// Surfaces that let light pass are dielectrics and masks; an opacity between them is not drawn.
+void warnOfOpacity(const Scene& scene) {
+  std::string names;
+  for (const Material& m : scene.materials)
+    if (m.opacity > 0.0f && m.opacity < 1.0f && m.bsdf != Bsdf::dielectric && m.bsdf != Bsdf::none && !m.alphaMasked)
+      names += fmt::format("{}'{}' ({:.3g})", names.empty() ? "" : ", ", m.name, m.opacity);
+  if (!names.empty()) logWarning("{}: opaque in spite of an opacity: material {}", scene.file.string(), names);
+}
+
+/// Lights of any file: finite, and not so bright that sums of light would leave the range of floats.
+void checkLights(const Scene& scene, const fs::path& file) {
+  const auto check = [&](const std::string& what, const glm::vec3& light) {
+    for (int c = 0; c < 3; ++c)
+      if (!(light[c] >= 0.0f && static_cast<double>(light[c]) <= kMostLight))
+        throwBadInput("{}: {} is {} {} {}; expected numbers from 0 to {:g}", file.string(), what, light.x, light.y,
+                      light.z, kMostLight);
+  };
+  if (scene.sun) check("the sun's irradiance", scene.sun->irradiance);
+  for (std::size_t i = 0; i < scene.spots.size(); ++i)
+    check(fmt::format("the intensity of spot {}", i + 1), scene.spots[i].intensity);
+  for (std::size_t i = 0; i < scene.points.size(); ++i)
+    check(fmt::format("the intensity of point light {}", i + 1), scene.points[i].intensity);
+  for (const Material& material : scene.materials) {
+    check(fmt::format("the emission of material {}", material.name), material.emission);
+    check(fmt::format("the emission of material {}", material.name), material.emissionScale);
+  }
+}
+
+}  // namespace
+
 Scene loadScene(const fs::path& file) {
-  if (lowerExtension(file) == ".json") return loadSceneFile(file);
-  Scene scene = loadModel(file);
-  setDefaultSky(scene);
-  setDefaultExposure(scene, scene.cameras.front());
-  setExposureForLamps(scene);
+  const bool isModel = lowerExtension(file) != ".json";
+  Scene scene = isModel ? loadModel(file) : loadSceneFile(file);
+  checkLights(scene, file);
+  if (isModel) {
+    setDefaultSky(scene);
+    setDefaultExposure(scene, scene.cameras.front());
+    setExposureForLamps(scene);
+  }
+  warnOfOpacity(scene);
   return scene;
 }
 

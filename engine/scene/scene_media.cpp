@@ -97,7 +97,7 @@ class Media {
     return result;
   }
 
-  static DensityGrid readGrid(const Value& object) {
+  DensityGrid readGrid(const Value& object) const {
     std::filesystem::path file;
     std::optional<glm::ivec3> size;
     std::optional<glm::dvec3> low, high;
@@ -119,8 +119,8 @@ class Media {
     if (!(low->x < high->x && low->y < high->y && low->z < high->z))
       object.fail("a grid whose \"max\" is above its \"min\" in all three");
     DensityGrid grid = readDensityGrid(file, size);
-    grid.min = *low;
-    grid.max = *high;
+    grid.min = *low - scene_.origin;
+    grid.max = *high - scene_.origin;
     for (float& density : grid.density) {
       density *= static_cast<float>(factor);
       if (!std::isfinite(density)) object.at("factor").fail("a factor that leaves densities finite");
@@ -144,6 +144,7 @@ Bsdf readBsdf(const Value& value) {
 }
 
 void readMaterial(const Value& object, Media& media, Material& material) {
+  const Bsdf before = material.bsdf;
   bool hasIor = false;
   std::optional<NamedMedium> interior;
   constexpr const char* kReflectance = "an array of 3 numbers from 0 to 1";
@@ -169,6 +170,8 @@ void readMaterial(const Value& object, Media& media, Material& material) {
           {"emission", [&](const Value& v) { material.emission = v.light(); }},
       });
   if (interior && !object.has("bsdf")) material.bsdf = Bsdf::dielectric;
+  // The roughness of a model's coat is not that of a mirror, metal or glass in its place.
+  if (before == Bsdf::diffuse && material.bsdf != Bsdf::diffuse && !object.has("roughness")) material.roughness = 0.0f;
   if (interior && material.bsdf != Bsdf::dielectric && material.bsdf != Bsdf::none)
     object.at("interior").fail("no interior, as only \"dielectric\" and \"none\" have an inside");
   if (!interior) return;

@@ -12,6 +12,9 @@ void main() {
   vec4 clip[3];
   for (int i = 0; i < 3; ++i) clip[i] = clipOf(gl_in[i].gl_Position, gl_InvocationID);
   if (beyondOneSide(clip[0], clip[1], clip[2])) return;
+#if LAMPS
+  if (holdsLamp(gl_in[0].gl_Position.xyz, gl_in[1].gl_Position.xyz, gl_in[2].gl_Position.xyz, gl_InvocationID)) return;
+#endif
   for (int i = 0; i < 3; ++i) {
     gl_Position = clip[i];
     gl_Layer = firstLayer + gl_InvocationID;

@@ -1,5 +1,5 @@
-// Incoming light from spot and omnidirectional lights: E = I(omega) cos / d^2, shadowed. The flags SPOTS and POINTS
-// give their numbers.
+// Incoming light from spot and omnidirectional lights: E = I(omega) cos / d^2. The flags SPOTS and POINTS give the
+// numbers of those with shadows; PLAIN_LAMPS: whether there are others.
 #include "shared/bindings.h"
 #include "lib/spot.glsl"
 #include "shared/lights.h"
@@ -76,6 +76,22 @@ Arriving pointLight(int i, vec3 position, vec3 normal, vec3 meshNormal) {
   float visible = 0.25 * (pointShadowTap(i, fromLight + u + v) + pointShadowTap(i, fromLight + u - v) +
                           pointShadowTap(i, fromLight - u + v) + pointShadowTap(i, fromLight - u - v));
   if (result.cosine > 0.0) result.irradiance = lights.points[i].intensity * (result.cosine / distance2 * visible);
+  return result;
+}
+#endif
+
+#if PLAIN_LAMPS
+layout(std430, binding = PLAIN_LAMPS_BINDING) readonly restrict buffer PlainLampBlock { PlainLamp plainLamps[]; };
+
+Arriving plainLamp(int i, vec3 position, vec3 normal) {
+  PlainLamp lamp = plainLamps[i];
+  vec3 away = lamp.position - position;
+  float distance2 = max(dot(away, away), kTouching);
+  Arriving result = Arriving(vec3(0.0), away * inversesqrt(distance2), 0.0);
+  result.cosine = dot(normal, result.toLight);
+  float falloff =
+      lamp.cosOuter < -1.0 ? 1.0 : spotFalloff(-dot(result.toLight, lamp.direction), lamp.cosInner, lamp.cosOuter);
+  if (result.cosine > 0.0) result.irradiance = lamp.intensity * (falloff * result.cosine / distance2);
   return result;
 }
 #endif

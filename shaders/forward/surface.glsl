@@ -25,7 +25,7 @@ layout(location = 0) out vec4 radiance;
 #if SUN
 #include "forward/sun_shadow.glsl"
 #endif
-#if SPOTS || POINTS
+#if SPOTS || POINTS || PLAIN_LAMPS
 #include "forward/lights.glsl"
 #endif
 
@@ -47,7 +47,7 @@ bool isCoated;
 vec3 reflection(vec3 albedo, vec3 normal, vec3 toCamera, vec3 toLight) {
   vec3 reflected = albedo / kPi;
 #if SPECULAR
-  if (isCoated) {
+  if (isCoated && coat.alpha > 0.0) {
     vec3 t, b;
     tangentFrame(normal, t, b);
     vec3 o = vec3(dot(toCamera, t), dot(toCamera, b), dot(toCamera, normal)),
@@ -69,10 +69,11 @@ void add(inout vec3 result, vec3 radiance, int term) {
 }
 
 void main() {
+  // The material, and the surface's normals.
   vec3 albedo = materialAlbedo(vTexCoord), mapped = materialNormal(vNormal, vPosition, vTexCoord);
 #if SPECULAR
   coat = materialCoat(vTexCoord);
-  isCoated = any(greaterThan(coat.specular, vec3(0.0)));
+  isCoated = any(greaterThan(coat.specular, vec3(0.0))) || coat.alpha == 0.0;
 #endif
 #if EMISSION
   vec3 emitted = materialEmitted(vTexCoord);
@@ -84,7 +85,7 @@ void main() {
 #if INSPECTED
   isVisible = !isCutOut;
 #endif
-  vec3 toCamera = normalize(frame.cameraPosition - vPosition);
+  vec3 toCamera = normalize(eyeOf(vPosition) - vPosition);
   // Surfaces are two-sided. The geometric side of the face, not the interpolated normal, decides whether to flip the
   // normal towards the viewer.
   vec3 meshNormal = normalize(gl_FrontFacing ? vNormal : -vNormal);
@@ -92,6 +93,8 @@ void main() {
 #if NORMAL_MAPS
   normal = normalize(gl_FrontFacing ? mapped : -mapped);
 #endif
+
+  // Sun and lamps.
   vec3 result = vec3(0.0);
 #if SUN
   float cosine = dot(normal, -frame.sunDirection);
@@ -118,14 +121,26 @@ void main() {
       add(result, reflection(albedo, normal, toCamera, light.toLight) * light.irradiance, INSPECTED_POINTS + i);
   }
 #endif
+#if PLAIN_LAMPS
+  vec3 plain = vec3(0.0);
+  for (int i = 0; i < plainLamps.length(); ++i) {
+    Arriving light = plainLamp(i, vPosition, normal);
+    if (light.cosine > 0.0) plain += reflection(albedo, normal, toCamera, light.toLight) * light.irradiance;
+  }
+  add(result, plain, INSPECTED_PLAIN_LAMPS);
+#endif
+
+  // What the technique adds, and emission.
 #if INDIRECT
   vec3 indirect = indirectIrradiance(vPosition, normal, meshNormal);
 #if SPECULAR
-  if (isCoated) albedo *= 1.0 - coatAlbedo(coat, dot(normal, toCamera));  // as of light that is the same from all sides
+  // as of light that is the same from all sides
+  if (isCoated && coat.alpha > 0.0) albedo *= 1.0 - coatAlbedo(coat, dot(normal, toCamera));
 #endif
   result += albedo / kPi * indirect;
 #endif
 #if INDIRECT_SPECULAR
+  if (coat.alpha == 0.0) result = vec3(0.0);  // mirrors and glass have no base
   if (isCoated) add(result, indirectSpecular(vPosition, normal, toCamera, coat), INSPECTED_GLOSSY);
 #endif
 #if EMISSION

@@ -155,6 +155,7 @@ vec3 followPath(Surface surface, uint triangle, PathNumbers numbers) {
     Ray traced = ray;
     if (isShadow) traced = shadow.ray;
     BvhTraversal traversal = beginRay(traced, triangle);
+    if (isShadow) traversal.lampEnd = traced.tMax;
     for (int left = bvhNodeCount(); left > 0 && !isDone(traversal); --left) advanceRay(traversal, isShadow);
     if (isShadow) {
       if (traversal.hit.triangle == kNoHit) radiance += shadow.light;

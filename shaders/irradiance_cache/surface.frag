@@ -6,4 +6,11 @@ vec3 indirectIrradiance(vec3 position, vec3 normal, vec3 meshNormal) {
   bool found;
   return cachedIrradiance(position, meshNormal, found);
 }
+#if INDIRECT_SPECULAR
+#include "lib/coat.glsl"
+layout(binding = UNIT_REFLECTED) uniform sampler2D reflections;
+vec3 indirectSpecular(vec3 position, vec3 normal, vec3 toCamera, Coat coat) {
+  return texelFetch(reflections, ivec2(gl_FragCoord.xy), 0).rgb;
+}
+#endif
 #include "forward/surface.glsl"

@@ -53,10 +53,10 @@ void main() {
   if (any(greaterThanEqual(pixel, size))) return;
   vec3 clip = vec3((vec2(pixel) + 0.5) / vec2(size), texelFetch(depth, pixel, 0).r) * 2.0 - 1.0;
   vec4 seen = worldFromClip * vec4(clip, 1.0);
-  vec3 ray = seen.xyz / seen.w - frame.cameraPosition;
+  vec3 eye = eyeOf(seen.xyz / seen.w), ray = seen.xyz / seen.w - eye;
   float far = length(ray);
   ray /= far;
-  vec2 range = hazeRange(frame.cameraPosition, ray);
+  vec2 range = hazeRange(eye, ray);
   range.y = min(range.y, far);
   if (range.y <= range.x) return;
 
@@ -71,12 +71,12 @@ void main() {
     vec3 volume = vec3(0.0);
 #if PROPAGATED
     float at = min(float(first) + float(kVolumeEvery) * part, float(steps));
-    volume = volumeScattered(frame.cameraPosition + (range.x + at * piece) * ray, -ray);
+    volume = volumeScattered(eye + (range.x + at * piece) * ray, -ray);
 #endif
     for (int i = first; i < steps && i < first + kVolumeEvery; ++i) {
       vec3 light = volume;
 #if SUN
-      light += sunScattered(frame.cameraPosition + (range.x + (float(i) + part) * piece) * ray, -ray);
+      light += sunScattered(eye + (range.x + (float(i) + part) * piece) * ray, -ray);
 #endif
       sum += through * taken * haze.scattering * light;
       through *= passes;

@@ -98,8 +98,17 @@ bool lampsReach(Path path) {
 #endif
 }
 
+// How much longer the way along a direction is than from the path's origin. inward: by how much, along a face's normal,
+// the origin was moved away from the face.
+float headOf(vec3 inward, vec3 direction) {
+  float shift = length(inward);
+  if (!(shift > 0.0)) return 0.0;
+  float cosine = dot(inward, direction) / shift;
+  return shift / (abs(cosine) > 1e-4 ? cosine : cosine < 0.0 ? -1e-4 : 1e-4);
+}
+
 // At a collision: light from a lamp if `queuesLight`, then a new direction from the phase function.
-int scatterInMedium(inout Path path, MediumRecord medium, PathNumbers numbers, bool queuesLight) {
+int scatterInMedium(inout Path path, MediumRecord medium, vec3 inward, PathNumbers numbers, bool queuesLight) {
   path.skip = kNoHit;
   path.head = 0.0;
   path.chain = 0u;
@@ -129,7 +138,7 @@ int scatterInMedium(inout Path path, MediumRecord medium, PathNumbers numbers, b
     if (light.pdf > 0.0) contribution *= powerHeuristic(light.pdf, dot(channelProbabilities(path.throughput), phase));
 #endif
     if (any(greaterThan(contribution, vec3(0.0))))
-      queueShadowRay(path, contribution, path.origin, light, kNoHit, numbers);
+      queueShadowRay(path, contribution, path.origin, light, kNoHit, headOf(inward, light.direction), numbers);
   }
 #endif
 #if !SCATTERED_LIGHT && !NEXT_EVENT

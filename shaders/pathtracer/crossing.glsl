@@ -149,7 +149,7 @@ bool crossShadow(Hit hit) {
           far = hit.triangle == kNoHit ? (shadow.infinite ? kFar : 1.0) : hit.t;
     uvec4 words = shadow.words;
     vec3 through = mediumTransmittance(mediumOf(medium), shadow.origin + shadow.from * shadow.direction,
-                                       shadow.direction / unit, (far - shadow.from) * unit, words);
+                                       shadow.direction / unit, max(far - shadow.from, 0.0) * unit, words);
 #if HETEROGENEOUS
     forgetAddresses();
     reloadShadow();

@@ -36,7 +36,7 @@ void addPointLight(inout Path path, MediumRecord medium, vec3 q, float s, PathNu
   vec3 contribution = medium.albedo * medium.extinction * passageWeight(medium, q, x) *
                       phaseValue(medium, path.direction, light.direction) * light.value / density;
   if (any(greaterThan(contribution, vec3(0.0))))
-    queueShadowRay(path, contribution, place, light, kNoHit, numbers);
+    queueShadowRay(path, contribution, place, light, kNoHit, 0.0, numbers);
 }
 #endif
 
@@ -51,7 +51,10 @@ int trackDensity(inout Path path, MediumRecord medium, float distance, PathNumbe
   uvec4 words = randomWords(numbers, path.event, kPurposeFlight);
   float bound = 0.0, t = 0.0;
   uint tries = 0u;
-  bool goesOn = densityMarchStart(gridOf(medium), path.origin, path.direction, distance, march);
+  // from the surface that the ray left
+  float head = path.head;
+  bool goesOn = densityMarchStart(gridOf(medium), path.origin - head * path.direction, path.direction,
+                                  distance + head, march);
   int left = densityMostBlocks(gridOf(medium));
   for (; left > 0 && goesOn && densityMarchNext(gridOf(medium), march, bound); --left) {  // ends: as many as blocks
     ++loopIterations;
@@ -73,7 +76,7 @@ int trackDensity(inout Path path, MediumRecord medium, float distance, PathNumbe
         addLight(path, emitted);
 #if INSPECTED
         noteLight(path, numbers, lightOf(path, emitted), PATH_INSPECTED_MEDIUM, 0u, path.origin,
-                  path.origin + t * path.direction, false);
+                  path.origin + (t - head) * path.direction, false);
 #endif
       }
 #endif
@@ -91,9 +94,9 @@ int trackDensity(inout Path path, MediumRecord medium, float distance, PathNumbe
   take(path);
   path.throughput = throughput;
   bool arrives = !collided && tries < kMostTracked;
-  if (!arrives) path.origin += t * path.direction;
+  if (!arrives) path.origin += (t - head) * path.direction;
   if (!arrives && !collided) {
-    path.travelled += t;
+    path.travelled += t - head;
     path.head = 0.0;
     ++path.event;
   }
@@ -185,7 +188,7 @@ bool walk(inout Path path, MediumRecord medium, inout float flight, PathNumbers 
     numbers.sampleIndex += hiddenZero();
     weighFlight(path, medium, channelProbabilities(path.throughput), path.head + flight, false, numbers);
     path.origin += flight * path.direction;
-    if (scatterInMedium(path, medium, numbers, false) != kScattered) return false;
+    if (scatterInMedium(path, medium, vec3(0.0), numbers, false) != kScattered) return false;
     flight = beginFlight(path, medium, numbers);
   }
   return true;
@@ -233,13 +236,10 @@ int crossMedium(inout Path path, int index, float flight, Hit hit, PathNumbers n
       }
     }
   }
-  int became = scatterInMedium(path, mediumAt(index), numbers, lampsReach(path));
-#if !FIXED_EPSILON  // published rays have no such correction
-  float shift = length(inward);
-  if (shift > 0.0) {
-    float cosine = dot(inward, path.direction) / shift;
-    path.head = shift / (abs(cosine) > 0.01 ? cosine : cosine < 0.0 ? -0.01 : 0.01);
-  }
+#if FIXED_EPSILON
+  inward = vec3(0.0);  // published rays have no such correction
 #endif
+  int became = scatterInMedium(path, mediumAt(index), inward, numbers, lampsReach(path));
+  path.head = headOf(inward, path.direction);
   return became;
 }

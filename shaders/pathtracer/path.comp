@@ -21,6 +21,7 @@ layout(std140, binding = 0) uniform PathBlock { PathConstants tracer; };
 #include "rays/bvh.glsl"
 #include "rays/environment.glsl"
 #include "rays/lights.glsl"
+#include "rays/view.glsl"
 
 layout(rgba32ui, binding = 0) uniform uimage2D filmMean;    // xyz and, as an integer, the number of samples
 layout(rgba32ui, binding = 1) uniform uimage2D filmM2;  // sum of squared deviations; w unused
@@ -69,7 +70,12 @@ void addNextEvent(Path path, Surface surface, uint triangle, Bsdf bsdf, float io
 #endif
   if (all(equal(contribution, vec3(0.0)))) return;
   vec3 start = beside(surface, side > 0.0 ? surface.geometricNormal : -surface.geometricNormal);
-  queueShadowRay(path, contribution, start, light, triangle, numbers);
+#if MEDIA && !FIXED_EPSILON
+  float head = gapAt(surface) / max(abs(side), 1e-4);
+#else
+  const float head = 0.0;
+#endif
+  queueShadowRay(path, contribution, start, light, triangle, head, numbers);
 }
 #endif
 
@@ -173,6 +179,9 @@ bool handleHit(inout Path path, Hit hit, PathNumbers numbers) {
   if (rank >= 0 && !crossBoundary(beyond, rank, surface.front)) atomicAdd(wrongCrossings, 1u);
 #endif
   PathMaterial material = materials[surface.material];
+#if DIFFUSE_ONLY
+  if (material.kind != PATH_NONE) material.kind = PATH_DIFFUSE;
+#endif
 #if NORMAL_MAPS
   applyNormalMap(surface, hit.triangle);
 #endif
@@ -522,7 +531,7 @@ void arrive(inout Path path, PathNumbers numbers) {
     spill(path);
 #if SHADOW_AT_ONCE
     if (shadow.waits &&
-        !anyHit(Ray(shadow.origin, 0.0, shadow.direction, shadow.infinite ? 3e38 : 1.0), shadow.skip)) {
+        !anyHitToLamp(Ray(shadow.origin, 0.0, shadow.direction, shadow.infinite ? 3e38 : 1.0), shadow.skip)) {
       path.radiance += shadow.light;
 #if INSPECTED
       noteShadow(path, false, numbers);
@@ -601,6 +610,8 @@ void main() {
 
     // The only traversal.
     BvhTraversal traversal = beginRay(ray, skip);
+    if (job == kShadowRay) traversal.lampEnd = ray.tMax;
+    if (job == kCoincidentRay) traversal.slack = -1.0;
     if (stage == kEnds) traversal.top = -1;
 #if INTERIORS || SHADOW_AT_ONCE
     const bool any = false;  // boundaries may let light through

@@ -71,9 +71,8 @@ Path startPath(ivec2 pixel, PathNumbers numbers) {
   vec2 place = vec2(pixel) + randomPair(numbers, 0u, kPurposeFilm);
 #endif
   Path path;
-  path.origin = tracer.cameraPosition;
+  viewRay(place, path.origin, path.direction);
   path.skip = kNoHit;
-  path.direction = normalize(tracer.firstPixel + place.x * tracer.pixelRight + place.y * tracer.pixelUp);
   path.pdf = 0.0;
   path.throughput = vec3(1.0);
   path.travelled = 0.0;
@@ -198,7 +197,7 @@ void startAt(inout Path path, Surface surface, uint triangle) {
   path.origin = beside(surface, cosine > 0.0 ? surface.geometricNormal : -surface.geometricNormal);
   path.skip = triangle;
 #if MEDIA
-  path.head = surface.magnitude * kBeside / max(abs(cosine), 0.01);
+  path.head = surface.magnitude * kBeside / max(abs(cosine), 1e-4);
   path.face = triangle;
 #endif
 }

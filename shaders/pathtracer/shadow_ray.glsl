@@ -64,8 +64,10 @@ void reloadShadow() {}
 void spillShadow() {}
 #endif
 
-// start: origin of the ray, on the triangle `skip`.
-void queueShadowRay(Path path, vec3 contribution, vec3 start, LightSample light, uint skip, PathNumbers numbers) {
+// start: origin of the ray, on the triangle `skip`. head: length of the way in the medium before it, since origins keep
+// a distance from surfaces; negative: the way begins behind it.
+void queueShadowRay(Path path, vec3 contribution, vec3 start, LightSample light, uint skip, float head,
+                    PathNumbers numbers) {
   shadow.waits = true;
   shadow.infinite = light.infinite;
   shadow.skip = skip;
@@ -77,7 +79,8 @@ void queueShadowRay(Path path, vec3 contribution, vec3 start, LightSample light,
   shadow.origin = start;
   shadow.direction = light.infinite ? light.direction : light.end - start;
 #if INTERIORS
-  shadow.tMin = shadow.from = 0.0;
+  shadow.tMin = 0.0;
+  shadow.from = light.infinite ? -head : -head / length(shadow.direction);
   shadow.ior = iorInside(path.inside);
   shadow.crossed = 0u;
   shadow.inside = path.inside;

@@ -3,6 +3,9 @@
 // Space: RayScene's (the world moved by -RayScene::origin()). Flag ALPHA_MASKS: the including file declares, before the
 // include, `bool isCutOut(uint triangle, vec2 barycentrics)`, which is called for triangles with a masked material.
 // Uses texture units 60 and 61.
+// Lamps: a surface whose plane contains a shadow ray's end, within kLampGap, does not shade the lamp there. So a lamp
+// in a ceiling's plane lights the room, and a narrow lamp does not shade itself. Where surfaces coincide, rays hit the
+// one that emits light.
 // Method: nodes of eight quantised boxes and their traversal order after [Ylitie2017], a watertight triangle test after
 // [Woop2013], boxes widened by the rounding of their distances after [Ize2013]. Buffer textures are used because
 // llvmpipe gathers from them three times as fast as from storage blocks.
@@ -69,8 +72,22 @@ float bvhEdge(precise vec2 a, precise vec2 b) {
   return area;
 }
 
-// Whether the ray hits the triangle at tMin < t < tMax, and where.
-bool bvhHitTriangle(BvhRay r, vec3 a, vec3 b, vec3 c, float tMin, float tMax, out float t, out vec2 barycentrics) {
+// Distances below which a point lies in a plane, over the largest coordinate of the triangle and the ray's origin: 16
+// roundings.
+const float kLampGap = 9.5367431640625e-7;  // 2^-20
+
+// The normal in the ray's own space; along its longest axis it is 1.
+vec3 bvhPlane(uint id, vec2 others, bvec2 turn) {
+  uint axis = (id >> BVH_TRIANGLE_AXIS_SHIFT) & 3u;
+  vec3 n = vec3(1.0, others);
+  return bvhTurn(axis == 1u ? n.zxy : axis == 2u ? n.yzx : n, turn);
+}
+
+// Whether the ray hits the triangle at tMin < t < tMax, and where. others: of its plane. t is that of the plane, since
+// the ratios of edges are far off in slivers; emissive triangles are moved towards the ray's origin by the gap.
+// lampEnd: t of the lamp that the ray goes to, or 3e38; slack: the origin's part of the gap, or negative for no gap.
+bool bvhHitTriangle(BvhRay r, vec3 a, vec3 b, vec3 c, uint id, vec2 others, float tMin, float tMax, float lampEnd,
+                    float slack, out float t, out vec2 barycentrics) {
   vec3 pa = bvhTurn(a - r.origin, r.turn), pb = bvhTurn(b - r.origin, r.turn), pc = bvhTurn(c - r.origin, r.turn);
   precise vec2 sa = pa.xy - r.shear.xy * pa.z;
   precise vec2 sb = pb.xy - r.shear.xy * pb.z;
@@ -79,8 +96,15 @@ bool bvhHitTriangle(BvhRay r, vec3 a, vec3 b, vec3 c, float tMin, float tMax, ou
   float area = u + v + w;
   float scale = 1.0 / area;
   barycentrics = vec2(v, w) * scale;
-  t = (u * scale * pa.z + barycentrics.x * pb.z + barycentrics.y * pc.z) * r.shear.z;
-  return !(min(u, min(v, w)) < 0.0 && max(u, max(v, w)) > 0.0) && area != 0.0 && t > tMin && t < tMax;
+  vec3 n = bvhPlane(id, others, r.turn), largest = max(abs(a), max(abs(b), abs(c)));
+  float along = (dot(n.xy, r.shear.xy) + n.z) / r.shear.z, distance = dot(n, pa),
+        gap = slack < 0.0 ? 0.0 : kLampGap * max(slack, max(largest.x, max(largest.y, largest.z)));
+  // a plane seen edge-on: within the corners
+  vec3 z = vec3(pa.z, pb.z, pc.z) * r.shear.z;
+  t = clamp(distance / along, min(z.x, min(z.y, z.z)), max(z.x, max(z.y, z.z)));
+  bool met = !(min(u, min(v, w)) < 0.0 && max(u, max(v, w)) > 0.0) && area != 0.0 && t > tMin;
+  if ((id & BVH_TRIANGLE_EMISSIVE) != 0u) t = max(t - gap / abs(along), tMin);
+  return met && t < tMax && !(abs(distance - along * lampEnd) <= gap);
 }
 
 bool bvhMissesMask(uint id, vec2 barycentrics) {
@@ -120,6 +144,8 @@ uint bvhHitFour(ivec3 near, ivec3 far, vec3 scale, vec3 nearBase, vec3 farBase, 
 struct BvhTraversal {
   BvhRay ray;
   float tMin;
+  float lampEnd;   // t of the lamp that a shadow ray goes to, 3e38 for other rays
+  float slack;     // largest coordinate of the origin; negative: surfaces that coincide are told apart
   uint skipTriangle;
   Hit hit;         // the nearest so far; its triangle is a texel of bvhTriangles
   // children to visit: x the first child of their parent; y bits 24..31 the remaining ones, in octant order, bits 0..7
@@ -157,8 +183,15 @@ bool isRay(Ray ray) {
 
 BvhTraversal beginRay(Ray ray, uint skipTriangle) {
   // The root is treated as the only child of a virtual parent, in the slot that is visited first.
-  return BvhTraversal(bvhPrepare(ray), ray.tMin, skipTriangle, Hit(ray.tMax, kNoHit, vec2(0.0)), uvec2(0u, 0x80000000u),
-                      isRay(ray) ? 0 : -1, 0);
+  return BvhTraversal(bvhPrepare(ray), ray.tMin, 3e38, largestOf(ray.origin), skipTriangle,
+                      Hit(ray.tMax, kNoHit, vec2(0.0)), uvec2(0u, 0x80000000u), isRay(ray) ? 0 : -1, 0);
+}
+
+// A shadow ray, which ends on a lamp at tMax.
+BvhTraversal beginRayToLamp(Ray ray, uint skipTriangle) {
+  BvhTraversal s = beginRay(ray, skipTriangle);
+  s.lampEnd = ray.tMax;
+  return s;
 }
 
 bool isDone(BvhTraversal s) { return s.top < 0; }
@@ -202,13 +235,14 @@ void advanceRay(inout BvhTraversal s, bool any) {
     ++loopIterations;
     int triangle = 1 + BVH_TRIANGLE_TEXELS * (int(n1.y) + k);
     uvec4 a = texelFetch(bvhTriangles, triangle);
-    vec3 b = uintBitsToFloat(texelFetch(bvhTriangles, triangle + 1).xyz),
-         c = uintBitsToFloat(texelFetch(bvhTriangles, triangle + 2).xyz);
+    vec4 b = uintBitsToFloat(texelFetch(bvhTriangles, triangle + 1)),
+         c = uintBitsToFloat(texelFetch(bvhTriangles, triangle + 2));
     float t;
     vec2 barycentrics;
     uint id = a.w & BVH_TRIANGLE_ID_MASK;
-    if (bvhHitTriangle(s.ray, uintBitsToFloat(a.xyz), b, c, s.tMin, s.hit.t, t, barycentrics) && id != s.skipTriangle &&
-        !bvhMissesMask(a.w, barycentrics)) {
+    if (bvhHitTriangle(s.ray, uintBitsToFloat(a.xyz), b.xyz, c.xyz, a.w, vec2(b.w, c.w), s.tMin, s.hit.t, s.lampEnd,
+                       s.slack, t, barycentrics) &&
+        id != s.skipTriangle && !bvhMissesMask(a.w, barycentrics)) {
       s.hit = Hit(t, uint(triangle), barycentrics);
       if (any) leaves = 0u;
     }
@@ -290,11 +324,12 @@ Hit closestHit(Ray ray, uint skipTriangle) {
 }
 
 // Whether anything is hit at all.
-bool anyHit(Ray ray, uint skipTriangle) {
-  BvhTraversal s = beginRay(ray, skipTriangle);
+bool anyHit(BvhTraversal s) {
   for (int left = bvhNodeCount(); left > 0 && !isDone(s); --left) advanceRay(s, true);
   return s.hit.triangle != kNoHit;
 }
+bool anyHit(Ray ray, uint skipTriangle) { return anyHit(beginRay(ray, skipTriangle)); }
+bool anyHitToLamp(Ray ray, uint skipTriangle) { return anyHit(beginRayToLamp(ray, skipTriangle)); }
 
 // A point just off a surface, on the side that the GEOMETRIC normal (unit) points to. The offset exceeds the rounding
 // error of a point computed from a triangle's barycentrics and that of testing its neighbours. As in

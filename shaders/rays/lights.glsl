@@ -9,7 +9,7 @@ struct LightSample {
   // radiance over pdf; for a light with one direction, the irradiance across the rays over the probability of picking
   // it
   vec3 value;
-  vec3 end;        // its position, offset from its surface; unused at infinity
+  vec3 end;        // its position; unused at infinity
   bool infinite;
 };
 
@@ -33,20 +33,15 @@ bool sampleLight(vec3 position, vec2 xi, uvec4 words, out LightSample light) {
   if (source.kind == PATH_LIGHT_TRIANGLE) {
     vec2 w = triangleSample(xi);
     vec3 p = source.a + w.x * source.b + w.y * source.c;
-    vec3 normal = cross(source.b, source.c);
-    float twiceArea = length(normal);
-    normal /= twiceArea;
     vec3 away = p - position;
     float distance2 = dot(away, away);
     light.direction = away * inversesqrt(distance2);
-    float cosine = dot(light.direction, normal);
+    float cosine = dot(light.direction, normalOf(source.p));
     reaches = abs(cosine) > 0.0 && distance2 > 0.0;
     if (reaches) {
-      float area = 0.5 * twiceArea / source.probability;  // over the density per area
-      light.pdf = distance2 / (abs(cosine) * area);
+      light.pdf = pickDensity(source.p) * distance2 / abs(cosine);
       light.value = emissionAt(source.q, source.p, w) / light.pdf;
-      vec3 largest = max(abs(source.a), max(abs(source.a + source.b), abs(source.a + source.c)));
-      light.end = offsetRay(p, cosine < 0.0 ? normal : -normal, max(largest.x, max(largest.y, largest.z)));
+      light.end = p;
     }
   }
 #endif

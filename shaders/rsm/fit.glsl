@@ -4,7 +4,8 @@
 #include "lib/frame.glsl"
 #include "forward/visible.glsl"
 #include "rsm/low.glsl"
-uniform float pixelWidth;   // width of a pixel, scene units across the view per unit of distance
+// Width of a pixel, scene units across the view: per unit of distance, or at any distance of an orthographic view.
+uniform float pixelWidth;
 uniform float fitNormal;    // minimum cosine between the normals
 // maximum distance from the tangent plane, in low-resolution sample spacings at the pixel
 uniform float fitPlane;
@@ -20,7 +21,8 @@ struct LowSample {
 // The i-th of the four around the pixel.
 LowSample lowSample(ivec2 pixel, int i) {
   vec3 position = visiblePosition(pixel), normal = visibleUnitNormal(pixel);
-  float stepLength = float(lowStep) * pixelWidth * distance(position, frame.cameraPosition);
+  float stepLength =
+      float(lowStep) * pixelWidth * (isOrthographic() ? 1.0 : distance(position, frame.cameraPosition));
   ivec2 lowSize = (textureSize(visibleDepth, 0) + lowStep - 1) / lowStep;
   vec2 at = (vec2(pixel) - float(lowStep / 2)) / float(lowStep);
   ivec2 base = clampedInt(floor(at), ivec2(0), max(lowSize - 2, 0));

@@ -1,4 +1,4 @@
-// Renders the six faces of an omnidirectional light in one draw: see lib/layered_triangle.glsl.
+// Renders the views of a spot or the six of an omnidirectional light in one draw: see lib/layered_triangle.glsl.
 #include "lib/layered_triangle.glsl"
 layout(triangles, invocations = LAYERS) in;
 layout(triangle_strip, max_vertices = 3) out;
@@ -12,6 +12,7 @@ void main() {
   vec4 clip[3];
   for (int i = 0; i < 3; ++i) clip[i] = clipOf(gl_in[i].gl_Position, gl_InvocationID);
   if (beyondOneSide(clip[0], clip[1], clip[2])) return;
+  if (holdsLamp(gl_in[0].gl_Position.xyz, gl_in[1].gl_Position.xyz, gl_in[2].gl_Position.xyz, gl_InvocationID)) return;
   for (int i = 0; i < 3; ++i) {
     gl_Position = clip[i];
     gl_Layer = gl_InvocationID;

@@ -9,8 +9,10 @@ SHARED_BEGIN
 #define BVH_TRIANGLE_TEXELS 3
 #define BVH_MAX_DEPTH 32                 // depth of the deepest node: the size of a traversal stack
 #define BVH_MAX_LEAF 3                   // triangles
-#define BVH_TRIANGLE_MASKED 0x80000000u  // in BvhTriangle::id: the material has an alpha mask
-#define BVH_TRIANGLE_ID_MASK 0x7fffffffu
+#define BVH_TRIANGLE_MASKED 0x80000000u    // in BvhTriangle::id: the material has an alpha mask
+#define BVH_TRIANGLE_EMISSIVE 0x40000000u  // it emits light
+#define BVH_TRIANGLE_AXIS_SHIFT 28         // two bits: the longest axis of the normal
+#define BVH_TRIANGLE_ID_MASK 0x0fffffffu
 
 // Eight boxes on a grid of 256 steps per axis, in 80 bytes [Ylitie2017]. Byte k of a pair of words belongs to child k.
 struct BvhNode {
@@ -28,11 +30,11 @@ struct BvhNode {
 
 struct BvhTriangle {
   vec3 a;
-  uint id;  // the scene's triangle, and the mask flag
+  uint id;       // the scene's triangle, the flags and the axis
   vec3 b;
-  float padding0;
+  float normal1;  // the normal's components along the next two axes, over that along the longest
   vec3 c;
-  float padding1;
+  float normal2;
 };
 
 SHARED_END

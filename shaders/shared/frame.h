@@ -7,7 +7,7 @@ SHARED_BEGIN
 struct FrameConstants {
   mat4 clipFromWorld;     // the camera's
   mat4 sunClipFromWorld;  // orthographic; used by the shadow map and the reflective shadow map
-  vec3 cameraPosition;
+  vec3 cameraPosition;     // where rays of a perspective view meet; any point of an orthographic one's plane
   float exposure;          // multiplies radiance before tone mapping
   vec3 sunDirection;       // unit, along which light travels
   float shadowNormalOffset;  // world units: a receiver is moved this far along its normal before the shadow test
@@ -15,6 +15,8 @@ struct FrameConstants {
   float padding0;
   vec3 background;         // radiance where there is no surface
   float padding1;
+  vec3 orthographicAxis;   // unit, along an orthographic view; 0: the view is perspective
+  float padding2;
 };
 
 SHARED_END

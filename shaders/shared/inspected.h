@@ -18,7 +18,8 @@ SHARED_BEGIN
 #define INSPECTED_LIGHTS 8       // radiance per light. Forward shading: as below; radiosity: the order of DirectLights
 #define INSPECTED_SUN 8
 #define INSPECTED_SPOTS 9
-#define INSPECTED_POINTS 13
+#define INSPECTED_POINTS 25
+#define INSPECTED_PLAIN_LAMPS 41
 
 #define INSPECTED_PARTS_BINDING 1
 

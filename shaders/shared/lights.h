@@ -1,12 +1,12 @@
-// Spot and omnidirectional lights as the forward shader reads them: uniform block 3, present only if the scene has such
-// lights.
+// Spot and omnidirectional lights as the forward shader reads them: those with shadows in uniform block 3, all others
+// in a storage block. Present only if the scene has such lights.
 #pragma once
 #include "shared/types.h"
 
 SHARED_BEGIN
 
-#define LIGHTS_MAX_SPOTS 4
-#define LIGHTS_MAX_POINTS 4
+#define LIGHTS_MAX_SHADOWS 16  // lamps of a kind
+#define PLAIN_LAMPS_BINDING 6  // a storage block
 
 struct SpotLightConstants {
   mat4 clipFromPlace;  // perspective, of its shadow map, for positions relative to `position`
@@ -28,8 +28,18 @@ struct PointLightConstants {
 };
 
 struct LightConstants {
-  SpotLightConstants spots[LIGHTS_MAX_SPOTS];
-  PointLightConstants points[LIGHTS_MAX_POINTS];
+  SpotLightConstants spots[LIGHTS_MAX_SHADOWS];
+  PointLightConstants points[LIGHTS_MAX_SHADOWS];
+};
+
+// A lamp without a shadow map.
+struct PlainLamp {
+  vec3 position;
+  float cosInner;
+  vec3 direction;      // of a spot
+  float cosOuter;      // below -1: omnidirectional
+  vec3 intensity;      // W/sr, of a spot on its axis
+  float padding;
 };
 
 SHARED_END

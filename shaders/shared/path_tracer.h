@@ -32,13 +32,14 @@ SHARED_BEGIN
 #define PATH_INSPECTED_BACKGROUND 6u
 
 struct PathConstants {
-  vec3 cameraPosition;
+  vec3 cameraPosition;      // where rays of a perspective view start; the centre of an orthographic one's picture
   uint seed;
   vec3 pixelRight;          // one pixel to the right, at distance 1 along the view
   uint sampleTarget;        // samples that every pixel of the tile should have
   vec3 pixelUp;             // one pixel up
   uint iterations;             // loop iterations after which a lane starts no further segment in this submission
-  vec3 firstPixel;          // from the camera to the lower left corner of the picture at distance 1
+  vec3 firstPixel;          // from the camera to the lower left corner of the picture at distance 1; along an
+                            // orthographic view
   uint minScatterings;      // light with fewer scatterings on its way to the camera is not counted
   vec3 background;
   uint maxScatterings;
@@ -47,6 +48,8 @@ struct PathConstants {
   vec4 environmentTurn;     // cosine and sine of its rotation
   ivec4 tile;               // its lower left pixel, its size
   ivec4 picture;            // size of the picture; z: the lanes of the state buffer, at least those of the tile
+  int isOrthographic;
+  int padding0, padding1, padding2;
 };
 
 // Position of a texture in the atlas; layer is PATH_NO_TEXTURE if there is none.

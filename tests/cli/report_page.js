@@ -660,7 +660,7 @@ async function openPage() {
     return r.result.value;
   };
   const isLoaded = () => evaluate('return !!report && document.readyState === "complete"');
-  for (let i = 0; i < 100 && !(await isLoaded()); ++i) await sleep(100);
+  for (let i = 0; i < 600 && !(await isLoaded()); ++i) await sleep(100);
   const state = () => evaluate('return JSON.parse(JSON.stringify({...f.state, shown: f.shown()}))');
   const codes = {'+': 'Equal', '-': 'Minus', '?': 'Slash', ' ': 'Space'};
   const keys = {Tab: 9, Enter: 13, ' ': 32, ArrowUp: 38, ArrowDown: 40};

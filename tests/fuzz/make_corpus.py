@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
 """Writes a few small right inputs for each fuzz target: make_corpus.py FOLDER. What the fuzzer mutates begins here."""
+import base64
+import json
 import pathlib
 import struct
 import sys
@@ -33,9 +35,9 @@ def tga(kind, width, height, bits, data, palette=b"", entries=0):
     return head + palette + data
 
 
-def bmp(width, height, bits, palette, data):
+def bmp(width, height, bits, palette, data, compression=0):
     begin = 54 + len(palette)
-    head = struct.pack("<IIIIiiHHIIiiII", begin + len(data), 0, begin, 40, width, height, 1, bits, 0, 0, 0, 0,
+    head = struct.pack("<IIIIiiHHIIiiII", begin + len(data), 0, begin, 40, width, height, 1, bits, compression, 0, 0, 0,
                        len(palette) // 4, 0)
     return b"BM" + head + palette + data
 
@@ -51,7 +53,10 @@ pictures = [
     tga(2, 2, 1, 24, bytes(6)), tga(2, 1, 1, 32, bytes(4)), tga(3, 2, 1, 8, b"\1\2"),
     tga(10, 4, 1, 24, b"\x82\1\2\3\0\4\5\6"), tga(11, 3, 1, 8, b"\x82\7"),
     tga(1, 2, 1, 8, b"\0\1", bytes(6), 2), tga(9, 2, 1, 8, b"\x81\1", bytes(6), 2),
-    bmp(1, 2, 24, b"", bytes(8)), bmp(1, -2, 32, b"", bytes(8)), bmp(2, 1, 8, bytes(8), bytes(4))]
+    bmp(1, 2, 24, b"", bytes(8)), bmp(1, -2, 32, b"", bytes(8)), bmp(2, 1, 8, bytes(8), bytes(4)),
+    bmp(9, 1, 1, bytes(8), bytes(4)), bmp(3, 1, 4, bytes(64), bytes(4)), bmp(3, 1, 16, b"", bytes(8)),
+    bmp(4, 2, 8, bytes(8), b"\2\1\0\2\1\1\1\1\0\0\0\1", 1), bmp(8, 1, 4, bytes(8), b"\0\5\1\1\x10\0\3\x10\0\1", 2),
+    bmp(1, 1, 32, struct.pack("<IIII", 255, 65280, 16711680, 0), bytes(4), 3)]
 put("picture", *pictures)
 put("picture_header", *pictures)
 
@@ -61,7 +66,22 @@ put("linear_picture",
     b"#?RGBE\nFORMAT=32-bit_rle_rgbe\n\n+Y 1 -X 4\n" + b"\1\2\3\x80\1\1\1\3",
     b"PF\n2 1\n-1.0\n" + struct.pack("<6f", 1, 2, 3, 4, 5, 6), b"Pf\n1 2\n1.0\n" + struct.pack(">2f", 1, 2))
 
-put("obj", "v 0 0 0\nv 1 .5 0\nv 0 -1e-3 +2\nvt 0 .1\nvn 0 0 1\nf 1/1/1 2//1 -1/1\nf 1 2 \\\n 3\n", "v 1 2 3\nf 1 1 1")
+put("obj", "v 0 0 0\nv 1 .5 0\nv 0 -1e-3 +2\nvt 0 .1\nvn 0 0 1\nf 1/1/1 2//1 -1/1\nf 1 2 \\\n 3\n", "v 1 2 3\nf 1 1 1",
+    'mtllib "fuzz.obj" b c.mtl\nnewmtl a\nKd 1\nKs 1 1 1\nNs 9\nd 0.5\nillum 7\nNi 1.5\nPm 1\nPr .5\nKe 1\n'
+    "map_Kd -s 2 2 2 -o 0.5 a b.png\nbump n.png -bm 1\nusemtl a\n"
+    "v 0 0 0 1 0 0\nv 2 0 0 0 1 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nvt 0 0\nf 1/1 2/1 3/1 4/1 5/1 6/1\n",
+    "v 12958091.1 50 1\nv 12958091.2 50 1\nv 12958091.1 51 1\nf 1 2 3\n",
+    "v 0 0 0\nv 3 0 0\nv 3 3 0\nv 0 3 0\nv 1 1 0\nv 1 2 0\nv 2 2 0\nv 2 1 0\nf 1 2 3 4 1 5 6 7 8 5\n")
+ply = "ply\nformat %s 1.0\ncomment TextureFile a.png\nelement vertex 3\nproperty float x\nproperty float y\n" \
+      "property float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n" \
+      "element face 1\nproperty list uchar int vertex_indices\nproperty list uchar float texcoord\n" \
+      "element tristrips 1\nproperty list int int vertex_indices\nelement camera 1\nproperty float x\nend_header\n"
+vertex = struct.pack("<fffBBB", 0, 1, 2, 255, 0, 9)
+put("ply", ply % "ascii" + "0 0 0 255 0 0\n1 0 0 1 2 3\n0 1 0 4 5 6\n3 0 1 2 6 0 0 1 0 0 1\n4 0 1 2 -1\n7\n",
+    (ply % "binary_little_endian").encode() + vertex * 3 + struct.pack("<BiiiBffffff", 3, 0, 1, 2, 6, 0, 0, 1, 0, 0, 1)
+    + struct.pack("<iiiiif", 4, 0, 1, 2, -1, 7), (ply % "binary_big_endian").encode() + bytes(80))
+put("stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
+    "endsolid a\n", b"COLOR=\1\2\3\4".ljust(80) + struct.pack("<I12fH", 1, *range(12), 31))
 
 put("scene_json",
     '{"model":"m.obj","scale":1000,"camera":{"position":[0,0,4],"target":[0,0,0],"up":[0,1,0],"fov":40},'
@@ -82,17 +102,43 @@ put("original_scene_json",
     '"lightIntensity":1},"0":{"sigma_s":[0,0,0],"sigma_a":[0,0,0],"g":[0,0,0],"ior":1}}')
 put("mtl", "newmtl Milk.001\nNi 1.33\nd 0.5\nKd 1 1 1\nnewmtl wall\nTr 0.2\n", "newmtl a b\n")
 
-gltf = ('{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"children":[1]},{"mesh":0}],'
-        '"meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],'
-        '"materials":[{"name":"m","alphaMode":"MASK","alphaCutoff":0.3,"emissiveFactor":[1,1,1],'
-        '"pbrMetallicRoughness":{"baseColorFactor":[1,1,1,0.5],"baseColorTexture":{"index":0,'
-        '"extensions":{"KHR_texture_transform":{"offset":[0.1,0.2],"scale":[2,2],"rotation":0.5}}}},'
-        '"extensions":{"KHR_materials_emissive_strength":{"emissiveStrength":5},'
-        '"KHR_materials_volume":{"attenuationDistance":1,"attenuationColor":[0.5,0.5,0.5],"thicknessFactor":1}}}],'
-        '"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],'
-        '"bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36}]}')
-padded = gltf + " " * (-len(gltf) % 4)
-put("gltf", gltf, b"glTF" + struct.pack("<III", 2, 20 + len(padded), len(padded)) + b"JSON" + padded.encode())
+numbers = struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0) + struct.pack("<12B", *[0, 1, 2, 0] * 3)
+numbers += struct.pack("<16f", *[1 if k % 5 == 0 else 0 for k in range(16)])
+gltf = {
+    "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+    "nodes": [{"children": [1, 2, 3]},
+              {"mesh": 0, "weights": [0.5],
+               "extensions": {"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 0}}}},
+              {"mesh": 0, "skin": 0, "translation": [1, 2, 3], "rotation": [0, 0, 1, 0], "scale": [-1, 1, 1]},
+              {"camera": 0, "extensions": {"KHR_lights_punctual": {"light": 0}}}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "COLOR_0": 0, "JOINTS_0": 1, "WEIGHTS_0": 2},
+                                "targets": [{"POSITION": 0}], "indices": 3, "mode": 5, "material": 0}]}],
+    "skins": [{"joints": [0], "inverseBindMatrices": 4}],
+    "cameras": [{"type": "orthographic", "orthographic": {"xmag": 1, "ymag": 1, "znear": 0, "zfar": 1}}],
+    "extensionsUsed": ["EXT_mesh_gpu_instancing", "VENDOR_x"],
+    "extensions": {"KHR_lights_punctual": {"lights": [{"type": "spot", "range": 1, "spot": {"innerConeAngle": 0.1}}]}},
+    "materials": [{"name": "m", "alphaMode": "MASK", "alphaCutoff": 0.3, "emissiveFactor": [1, 1, 1],
+                   "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.5], "baseColorTexture": {
+                       "index": 0, "extensions": {"KHR_texture_transform": {"offset": [0.1, 0.2], "rotation": 0.5}}}},
+                   "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 5},
+                                  "KHR_materials_volume": {
+                                      "attenuationDistance": 1, "attenuationColor": [0, 1, 0.5]}}}],
+    "textures": [{"source": 0, "sampler": 0}], "samplers": [{"wrapS": 33071}],
+    "images": [{"uri": "data:image/bmp;base64," + base64.b64encode(bmp(1, 1, 24, b"", bytes(4))).decode()}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"},
+                  {"bufferView": 1, "componentType": 5121, "count": 3, "type": "VEC4"},
+                  {"bufferView": 1, "componentType": 5121, "count": 3, "type": "VEC4", "normalized": True},
+                  {"bufferView": 1, "componentType": 5121, "count": 3, "type": "SCALAR", "sparse": {
+                      "count": 1, "indices": {"bufferView": 1, "componentType": 5121}, "values": {"bufferView": 1}}},
+                  {"bufferView": 2, "componentType": 5126, "count": 1, "type": "MAT4"}],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 12},
+                    {"buffer": 0, "byteOffset": 48, "byteLength": 64}],
+    "buffers": [{"byteLength": len(numbers)}]}
+inside = json.dumps(gltf)
+inside += " " * (-len(inside) % 4)
+gltf["buffers"][0]["uri"] = "data:;base64," + base64.b64encode(numbers).decode()
+put("gltf", json.dumps(gltf), b"glTF" + struct.pack("<III", 2, 28 + len(inside) + len(numbers), len(inside)) + b"JSON" +
+    inside.encode() + struct.pack("<I", len(numbers)) + b"BIN\0" + numbers)
 
 put("key_frames",
     "# a path\np 4 2 4 d -1 -0.3 -1 u 0 1 0 f 45\np 3 2 5 d -0.8 -0.3 -1 u 0 1 0 r 1 0 0 a 1.5\n",

@@ -942,6 +942,7 @@ TEST_F(GlSharedStructs, FrameBlock) {
   EXPECT_OFFSET(shadowNormalOffset);
   EXPECT_OFFSET(sunIrradiance);
   EXPECT_OFFSET(background);
+  EXPECT_OFFSET(orthographicAxis);
 #undef EXPECT_OFFSET
   EXPECT_EQ(sizeOf(program, "FrameBlock"), static_cast<GLint>(sizeof(FrameConstants)));
 }

@@ -7,7 +7,7 @@
 
 namespace lucerna::test {
 
-/// Direction (length arbitrary) through the centre of the pixel (x, y), top row first.
+/// Direction (length arbitrary) through the centre of the pixel (x, y), top row first; perspective.
 inline glm::dvec3 pixelRay(const Camera& camera, int x, int y, glm::ivec2 size) {
   const glm::dvec3 right = glm::normalize(glm::cross(camera.direction, camera.up));
   const glm::dvec3 up = glm::cross(right, camera.direction);

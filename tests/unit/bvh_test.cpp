@@ -170,6 +170,29 @@ TEST(BvhBuild, MovesTheOriginOnlyWhereThatIsExact) {
                 static_cast<double>(far.scene().vertices[far.scene().indices[k]].position[axis]));
 }
 
+TEST(BvhBuild, KeepsThePlaneOfASliverAndWhatEmits) {
+  SceneBuilder builder;
+  const int wall = builder.material(glm::vec3(0.5f)), lamp = builder.material(glm::vec3(0.0f));
+  builder.materialAt(lamp).emission = glm::vec3(1.0f);
+  const glm::dvec3 a(0.3, 0.7, -0.2), along(1.1, 0.4, 0.9), across(-3e-5, 7e-5, 2e-5);
+  builder.triangle(a, a + along, a + 0.4 * along + across, wall);
+  builder.triangle(a, a + along, a + along + across, lamp);
+  const Bvh bvh = buildBvh(builder.scene());
+  ASSERT_EQ(bvh.triangles.size(), 2u);
+  for (const shared::BvhTriangle& t : bvh.triangles) {
+    const bool emits = (t.id & BVH_TRIANGLE_EMISSIVE) != 0;
+    EXPECT_EQ(emits, (t.id & BVH_TRIANGLE_ID_MASK) == 1u);
+    const int axis = static_cast<int>(t.id >> BVH_TRIANGLE_AXIS_SHIFT & 3u);
+    glm::dvec3 normal(0.0);
+    normal[axis] = 1.0;
+    normal[(axis + 1) % 3] = static_cast<double>(t.normal1);
+    normal[(axis + 2) % 3] = static_cast<double>(t.normal2);
+    for (const double component : {normal.x, normal.y, normal.z}) EXPECT_LE(std::abs(component), 1.0);
+    for (const glm::vec3& corner : {t.b, t.c})
+      EXPECT_NEAR(glm::dot(normal, glm::dvec3(corner) - glm::dvec3(t.a)), 0.0, 3e-7);
+  }
+}
+
 TEST(BvhBuild, RefitsWhereTheTrianglesAreTheSame) {
   Scene scene = soup(2000, 0.1, 4);
   Bvh bvh = buildBvh(scene, {.splitBudget = 0.0});

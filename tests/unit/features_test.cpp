@@ -65,14 +65,19 @@ TEST(SceneFeaturesTest, EachFeatureRaisesItsFlagAlone) {
     c.change(scene);
     SceneFeatures expected = plainFeatures();
     expected.*c.flag = true;
+    const Bsdf bsdf = scene.materials[0].bsdf;
+    expected.specular |= bsdf != Bsdf::diffuse && bsdf != Bsdf::none;  // they reflect too
+    expected.specular |= scene.materials[0].metalMap.has_value();
     EXPECT_EQ(analyse(scene), expected) << c.name;
   }
 }
 
-TEST(SceneFeaturesTest, AMapThatMaySayMetalNeedsConductors) {
+TEST(SceneFeaturesTest, AMapOfMetalIsACoat) {
   Scene scene = plainScene();
-  scene.materials[0].metalMap = MetalMap{glm::vec3(0.5f), 1.0f, 1.0f, 0};  // its mean may be no metal
-  EXPECT_TRUE(analyse(scene).conductors);
+  scene.materials[0].metalMap = MetalMap{glm::vec3(0.5f), 1.0f, 1.0f, 0};
+  EXPECT_TRUE(analyse(scene).specular);
+  scene.materials[0].metalMap->roughness = -1.0f;  // says nothing of one
+  EXPECT_FALSE(analyse(scene).specular);
   scene.materials[0].normalTexture = 0;
   scene.materials[0].normalScale = 0.0f;
   EXPECT_FALSE(analyse(scene).normalMaps);

@@ -110,4 +110,20 @@ TEST(Film, BytesAreReadBackAndDamageIsSeen) {
   EXPECT_THROW(filmOf(bytes, "memory"), Error);
 }
 
+TEST(Film, PixelsThatFoundNothingAreNotExact) {
+  const auto pixel = [](float mean, std::uint32_t samples) {
+    return FilmPixel{glm::vec3(mean), glm::vec3(0.0f), samples};
+  };
+  const std::vector<FilmPixel> black(16, pixel(0.0f, 4));
+  EXPECT_TRUE(std::isinf(statisticsOf(black).relativeError));
+  // Half of the pixels shine without noise, half are black: of n samples there, three may find as much.
+  for (const std::uint32_t n : {4u, 64u}) {
+    std::vector<FilmPixel> half(8, pixel(2.0f, n));
+    half.resize(16, pixel(0.0f, n));
+    EXPECT_NEAR(statisticsOf(half).relativeError, std::sqrt(0.5 * 3.0) * 2.0 / n, 1e-9) << n;
+    EXPECT_EQ(statisticsOf(half).meanError, glm::dvec3(0.0));
+  }
+  EXPECT_EQ(statisticsOf(std::vector<FilmPixel>(16, pixel(1.0f, 4))).relativeError, 0.0);
+}
+
 }  // namespace

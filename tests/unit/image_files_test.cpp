@@ -219,6 +219,107 @@ TEST(ImageFiles, BottomUpFormatsComeOutTopRowFirst) {
   }
 }
 
+/// An EXR without compression, written by hand: floats, `value` of each channel at the pixels of the data window.
+struct ExrChannel {
+  std::string name;
+  int sampling;
+  float (*value)(int x, int y);
+};
+
+std::string exr(const std::vector<ExrChannel>& channels, glm::ivec4 data, glm::ivec4 display,
+                const std::vector<float>& chromaticities = {}) {
+  const auto number = [](auto value) {
+    std::string bytes(sizeof value, '\0');
+    std::memcpy(bytes.data(), &value, sizeof value);
+    return bytes;
+  };
+  const auto attribute = [&](const std::string& name, const std::string& type, const std::string& value) {
+    return name + '\0' + type + '\0' + number(static_cast<std::int32_t>(value.size())) + value;
+  };
+  const auto box = [&](glm::ivec4 b) { return number(b.x) + number(b.y) + number(b.z) + number(b.w); };
+  std::string list, text("\x76\x2f\x31\x01\x02\0\0\0", 8);
+  for (const ExrChannel& c : channels)
+    list += c.name + '\0' + number(std::int32_t{2}) + std::string(4, '\0') + number(c.sampling) + number(c.sampling);
+  text += attribute("channels", "chlist", list + '\0') + attribute("compression", "compression", std::string(1, '\0')) +
+          attribute("dataWindow", "box2i", box(data)) + attribute("displayWindow", "box2i", box(display)) +
+          attribute("lineOrder", "lineOrder", std::string(1, '\0')) +
+          attribute("pixelAspectRatio", "float", number(1.0f)) +
+          attribute("screenWindowCenter", "v2f", std::string(8, '\0')) +
+          attribute("screenWindowWidth", "float", number(1.0f));
+  std::string primaries;
+  for (const float v : chromaticities) primaries += number(v);
+  if (!primaries.empty()) text += attribute("chromaticities", "chromaticities", primaries);
+  text += '\0';
+  std::string offsets, lines;
+  const std::size_t begin = text.size() + 8 * static_cast<std::size_t>(data.w - data.y + 1);
+  for (int y = data.y; y <= data.w; ++y) {
+    std::string pixels;
+    for (const ExrChannel& c : channels)
+      for (int x = data.x; x <= data.z && y % c.sampling == 0; x += c.sampling) pixels += number(c.value(x, y));
+    offsets += number(static_cast<std::uint64_t>(begin + lines.size()));
+    lines += number(y) + number(static_cast<std::int32_t>(pixels.size())) + pixels;
+  }
+  return text + offsets + lines;
+}
+
+float constant(int, int) { return 0.25f; }
+float column(int x, int) { return static_cast<float>(x); }
+float row(int, int y) { return static_cast<float>(y); }
+float half(int, int) { return 0.5f; }
+float negative(int, int) { return -0.25f; }
+
+// What is displayed is the picture: black where there are no data, and data beyond its edge are cut off.
+TEST(ImageFiles, ExrShowsItsDisplayWindow) {
+  const TempFolder folder;
+  const std::vector<ExrChannel> channels = {{"B", 1, constant}, {"G", 1, row}, {"R", 1, column}};
+  const Image part = readImage(folder.write("a.exr", exr(channels, {2, 1, 3, 2}, {0, 0, 7, 3})));
+  ASSERT_EQ(glm::ivec2(part.width, part.height), glm::ivec2(8, 4));
+  EXPECT_EQ(part.at(3, 2), glm::vec3(3.0f, 2.0f, 0.25f));
+  EXPECT_EQ(part.at(2, 1), glm::vec3(2.0f, 1.0f, 0.25f));
+  EXPECT_EQ(part.at(4, 2), glm::vec3(0.0f));
+  EXPECT_EQ(part.at(0, 0), glm::vec3(0.0f));
+  const Image cut = readImage(folder.write("a.exr", exr(channels, {-2, -1, 6, 6}, {1, 2, 3, 3})));
+  ASSERT_EQ(glm::ivec2(cut.width, cut.height), glm::ivec2(3, 2));
+  EXPECT_EQ(cut.at(0, 0), glm::vec3(1.0f, 2.0f, 0.25f));
+  EXPECT_EQ(cut.at(2, 1), glm::vec3(3.0f, 3.0f, 0.25f));
+  EXPECT_NE(badInputMessage([&] {
+              readImage(folder.write("a.exr", exr(channels, {9, 9, 9, 9}, {0, 0, 3, 3})));
+            }).find("outside of its display window"),
+            std::string::npos);
+  EXPECT_NE(badInputMessage([&] {
+              readImage(folder.write("a.exr", exr({{"Z", 1, row}}, {0, 0, 1, 1}, {0, 0, 1, 1})));
+            }).find("channels Z; R, G and B, or Y, are read"),
+            std::string::npos);
+}
+
+// R = (RY + 1) Y, B = (BY + 1) Y, and G by the weights of Y (OpenEXR, "Technical Introduction").
+TEST(ImageFiles, ExrChromaBecomesColour) {
+  const TempFolder folder;
+  const Image image = readImage(
+      folder.write("a.exr", exr({{"BY", 2, half}, {"RY", 2, negative}, {"Y", 1, half}}, {0, 0, 15, 7}, {0, 0, 15, 7})));
+  const float r = 0.375f, b = 0.75f, g = (0.5f - 0.2126f * r - 0.0722f * b) / 0.7152f;
+  for (const glm::vec3& p : image.pixels) EXPECT_LT(glm::distance(p, glm::vec3(r, g, b)), 1e-3f);
+}
+
+TEST(ImageFiles, ExrPrimariesBecomeRec709) {
+  const TempFolder folder;
+  const std::vector<ExrChannel> channels = {{"B", 1, constant}, {"G", 1, constant}, {"R", 1, half}};
+  const auto read = [&](const std::vector<float>& chromaticities) {
+    return readImage(folder.write("a.exr", exr(channels, {0, 0, 0, 0}, {0, 0, 0, 0}, chromaticities))).at(0, 0);
+  };
+  EXPECT_EQ(read({0.64f, 0.33f, 0.3f, 0.6f, 0.15f, 0.06f, 0.3127f, 0.329f}), glm::vec3(0.5f, 0.25f, 0.25f));
+  // ITU-R BT.2087's matrix from BT.2020, of the same white; and a grey of another white stays grey.
+  const glm::vec3 wide = read({0.708f, 0.292f, 0.17f, 0.797f, 0.131f, 0.046f, 0.3127f, 0.329f});
+  EXPECT_LT(glm::distance(wide, glm::vec3(0.25f + 0.25f * 1.6605f, 0.25f - 0.25f * 0.1246f, 0.25f - 0.25f * 0.0182f)),
+            2e-4f);
+  const std::vector<ExrChannel> grey = {{"B", 1, half}, {"G", 1, half}, {"R", 1, half}};
+  const Image aces =
+      readImage(folder.write("a.exr", exr(grey, {0, 0, 0, 0}, {0, 0, 0, 0},
+                                          {0.7347f, 0.2653f, 0.0f, 1.0f, 0.0001f, -0.077f, 0.32168f, 0.33767f})));
+  EXPECT_LT(glm::distance(aces.at(0, 0), glm::vec3(0.5f)), 1e-5f);
+  EXPECT_NE(badInputMessage([&] { read({0, 0, 0, 0, 0, 0, 0, 0}); }).find("no primaries"), std::string::npos);
+}
+
 TEST(ImageFiles, EightBitPicturesAreLinearised) {
   const TempFolder folder;
   Bitmap bitmap = sampleBitmap(1, 1);

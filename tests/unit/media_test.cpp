@@ -99,6 +99,48 @@ TEST(SurroundingsUnit, WindingNumbersCountNestedBoxes) {
   EXPECT_GT(surroundingsOf(rankBoundaries(scene), {-1.5, 0.0, 0.0}).openness, 0.05);
 }
 
+TEST(BoundariesUnit, WhatLiesWithinAnotherComesAfterItWhateverTheOrder) {
+  for (const bool innerFirst : {false, true}) {
+    Scene scene;
+    scene.media.resize(2);
+    const int first = addBoundary(scene, Bsdf::none, 1.0f, 0, 0), second = addBoundary(scene, Bsdf::none, 1.0f, 1, 0);
+    const int inner = innerFirst ? first : second, outer = innerFirst ? second : first;
+    addBox(scene, glm::vec3(-2.0f), glm::vec3(2.0f), outer);
+    addBox(scene, glm::vec3(-1.0f), glm::vec3(1.0f), inner);
+    const auto rankOf = [&](int material) {
+      return rankBoundaries(scene).rankOfMaterial[static_cast<std::size_t>(material)];
+    };
+    EXPECT_EQ(rankOf(outer), 0);
+    EXPECT_EQ(rankOf(inner), 1);
+    scene.materials[static_cast<std::size_t>(outer)].priority = 1;  // a priority is stronger
+    EXPECT_EQ(rankOf(outer), 1);
+  }
+}
+
+TEST(BoundariesUnit, MediaThatCrossNeedAPriority) {
+  Scene scene;
+  scene.media.resize(2);
+  const int a = addBoundary(scene, Bsdf::none, 1.0f, 0, 0), b = addBoundary(scene, Bsdf::none, 1.0f, 1, 0);
+  scene.materials[static_cast<std::size_t>(a)].name = "smoke";
+  scene.materials[static_cast<std::size_t>(b)].name = "steam";
+  addBox(scene, glm::vec3(-2.0f), glm::vec3(2.0f), a);
+  addBox(scene, glm::vec3(-1.0f), glm::vec3(3.0f), b);
+  try {
+    rankBoundaries(scene);
+    FAIL() << "not refused";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("smoke and steam"), std::string::npos) << error.what();
+  }
+  scene.materials[static_cast<std::size_t>(a)].priority = 1;
+  EXPECT_NO_THROW(rankBoundaries(scene));
+  Scene beside;  // a face in common is not an overlap
+  beside.media.resize(2);
+  addBox(beside, glm::vec3(-1.0f), glm::vec3(1.0f), addBoundary(beside, Bsdf::none, 1.0f, 0, 0));
+  addBox(beside, glm::vec3(1.0f, -1.0f, -1.0f), glm::vec3(3.0f, 1.0f, 1.0f),
+         addBoundary(beside, Bsdf::none, 1.0f, 1, 0));
+  EXPECT_NO_THROW(rankBoundaries(beside));
+}
+
 TEST(SurroundingsUnit, BoundariesThatMayTouchOtherSurfacesAreTold) {
   Scene scene;
   const int glass = addBoundary(scene, Bsdf::dielectric, 1.5f, -1, 0),

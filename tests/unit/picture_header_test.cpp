@@ -113,9 +113,56 @@ TEST(PictureHeader, BmpOfEveryKindIsRead) {
   const std::string rows = std::string("\x01\x02\x03\0", 4) + std::string("\x04\x05\x06\0", 4);  // bottom row first
   EXPECT_EQ(texel(read(bmp(1, 2, 24, "", rows)), 0, 0), (Texel{6, 5, 4, 255}));
   EXPECT_EQ(texel(read(bmp(1, static_cast<std::uint32_t>(-2), 24, "", rows)), 0, 0), (Texel{3, 2, 1, 255}));
-  EXPECT_EQ(
-      texel(read(bmp(1, 1, 8, std::string("\x01\x02\x03\0\x04\x05\x06\0", 8), std::string("\x01\0\0\0", 4))), 0, 0),
-      (Texel{6, 5, 4, 255}));
+  EXPECT_EQ(texel(read(bmp(1, 2, 32, "", rows)), 0, 0), (Texel{6, 5, 4, 255}));
+  EXPECT_EQ(texel(read(bmp(1, 1, 16, "", std::string("\x1f\x7c\0\0", 4))), 0, 0), (Texel{255, 0, 255, 255}));
+  // Palettes: 1, 4 and 8 bits, and run lengths with a step and values as they are.
+  const std::string palette = std::string("\x01\x02\x03\0\x04\x05\x06\0", 8);
+  EXPECT_EQ(texel(read(bmp(1, 1, 8, palette, std::string("\x01\0\0\0", 4))), 0, 0), (Texel{6, 5, 4, 255}));
+  EXPECT_EQ(texel(read(bmp(3, 1, 4, palette, std::string("\x10\x10\0\0", 4))), 2, 0), (Texel{6, 5, 4, 255}));
+  EXPECT_EQ(texel(read(bmp(3, 1, 1, palette, std::string("\x20\0\0\0", 4))), 2, 0), (Texel{6, 5, 4, 255}));
+  const std::string runs8 = std::string("\x02\x01\0\x02\x01\x01\x01\x01\0\0\0\x01", 12);  // 2 x 1; step 1, 1; 1 x 1
+  const Bitmap packed = read(bmp(4, 2, 8, palette, runs8, 1));
+  EXPECT_EQ(texel(packed, 1, 1), (Texel{6, 5, 4, 255}));
+  EXPECT_EQ(texel(packed, 2, 1), (Texel{3, 2, 1, 255}));
+  EXPECT_EQ(texel(packed, 3, 0), (Texel{6, 5, 4, 255}));
+  const std::string runs4 = std::string("\0\x05\x01\x01\x10\0\x03\x10\0\x01", 10);  // five as they are; three of 1, 0
+  const Bitmap nibbles = read(bmp(8, 1, 4, palette, runs4, 2));
+  for (const int x : {1, 3, 4, 5, 7}) EXPECT_EQ(texel(nibbles, x, 0), (Texel{6, 5, 4, 255})) << x;
+  for (const int x : {0, 2, 6}) EXPECT_EQ(texel(nibbles, x, 0), (Texel{3, 2, 1, 255})) << x;
+  // Masks in a header of version 4, with alpha; 5 of 7 are 182 of 255.
+  std::string masked = bmp(1, 1, 16, "", "", 3);
+  masked.replace(10, 8, little(14 + 108, 4) + little(108, 4));
+  masked += little(0x0007, 4) + little(0x0038, 4) + little(0x01c0, 4) + little(0x0200, 4) + std::string(52, '\0') +
+            little(0x0005 | 0x0038, 4);
+  const Bitmap alpha = read(masked);
+  EXPECT_EQ(texel(alpha, 0, 0), (Texel{182, 255, 0, 0}));
+  EXPECT_TRUE(alpha.hasAlpha);
+  // OS/2's header.
+  EXPECT_EQ(texel(read("BM" + little(30, 4) + little(0, 4) + little(26, 4) + little(12, 4) + little(1, 2) +
+                       little(1, 2) + little(1, 2) + little(24, 2) + std::string("\x01\x02\x03\0", 4)),
+                  0, 0),
+            (Texel{3, 2, 1, 255}));
+}
+
+TEST(PictureHeader, BmpStaysWithinItsBytes) {
+  const TempFolder folder;
+  const std::string palette = std::string("\x01\x02\x03\0\x04\x05\x06\0", 8);
+  const std::pair<std::string, const char*> cases[] = {
+      {bmp(1, 1, 8, palette, std::string("\x02\0\0\0", 4)), "a pixel beyond its palette of 2"},
+      {bmp(2, 1, 4, palette, std::string("\x03\0\0\0", 4)), "a pixel beyond its palette of 2"},
+      {bmp(1, 1, 1, palette.substr(0, 4), std::string("\x80\0\0\0", 4)), "a pixel beyond its palette of 1"},
+      {bmp(1, 1, 8, palette, std::string("\x01\x02\0\x01", 4), 1), "a pixel beyond its palette of 2"},
+      {bmp(4, 4, 8, palette, std::string("\x05\x01\0\x01", 4), 1), "leaves its row"},
+      {bmp(4, 4, 8, palette, std::string("\x04\x01", 2), 1), "ends too early"},
+      {bmp(4, 4, 8, palette, std::string("\0\x03\x01", 3), 1), "ends too early"},
+      {bmp(1, 1, 7, palette, "xxxx"), "an unsupported kind of BMP: 7 bits, compression 0"},
+      {bmp(1, 1, 24, "", "xxxx", 4), "an unsupported kind of BMP: 24 bits, compression 4"}};
+  for (const auto& [content, said] : cases) {
+    const std::string message = refusal(folder, "a.bmp", content);
+    EXPECT_NE(message.find(said), std::string::npos) << message;
+  }
+  EXPECT_NE(refusal(folder, "a.tga", tga(2, 1, 1, 24, "abc").replace(17, 1, 1, '\x10')).find("rows from the left"),
+            std::string::npos);
 }
 
 TEST(PictureHeader, ProgressiveJpegIsRead) {
@@ -211,7 +258,6 @@ TEST(PictureHeader, PacketsAndPalettesStayWithinTheirPicture) {
                         2))
                 .find("palette"),
             std::string::npos);
-  refusal(folder, "a.bmp", bmp(4, 4, 8, "", std::string(16, 'x'), 1));  // run lengths: DevIL writes past the picture
 }
 
 }  // namespace

@@ -128,6 +128,7 @@ TEST(SceneFile, WhatIsWrongIsNamedByFileAndKey) {
       {R"(, "background": [1, 2, "3"])", "\"background[2]\""},
       {R"(, "background": [1, 2, -3])", "\"background\""},
       {R"(, "background": [1, 2, 1e300])", "\"background\""},
+      {R"(, "sun": {"direction": [0,-1,0], "irradiance": [1,1,1e37]})", "from 0 to 1e+30"},
       {R"(, "sun": [1, 2, 3])", "\"sun\""},
       {R"(, "sun": {"direction": [0,-1,0]})", "irradiance"},
       {R"(, "sun": {"direction": [0,0,0], "irradiance": [1,1,1]})", "\"sun.direction\""},

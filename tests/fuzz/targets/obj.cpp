@@ -1,12 +1,12 @@
-// The check of OBJ text, and the repair of its numbers.
+// OBJ, and MTL in the same text: a file that names itself as its library.
 #include "fuzz.hpp"
 
-#include "scene/scene_file.hpp"
+#include "scene/model_parts.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const std::string_view text = lucerna::fuzz::textOf(data, size);
   return lucerna::fuzz::parse([&] {
-    lucerna::checkObj("fuzz.obj", text);
-    lucerna::checkObj("fuzz.obj", lucerna::repairedObj(text));  // what was right stays right
+    lucerna::Scene scene;
+    scene.file = lucerna::fuzz::write("fuzz.obj", lucerna::fuzz::textOf(data, size));
+    lucerna::readObj(scene, {data, size});
   });
 }

@@ -1,0 +1,215 @@
+// Light at its limits: lamps as narrow as needles, lamps in a surface's plane, media of 1e7 mean free paths under the
+// sun, media within media, light that four samples do not find, rooms and lamps wound the other way, a sky of one
+// texel. Each has a closed form or a scene that it must equal.
+#include "base/angles.hpp"
+#include "bench/stability.hpp"
+#include "bench/stability_room.hpp"
+#include "pathtracer/path_tracer.hpp"
+#include "radiosity/radiosity_view.hpp"
+#include "render/renderer.hpp"
+
+#include <fmt/core.h>
+
+#include <array>
+#include <cmath>
+
+namespace lucerna::demo::bench {
+
+namespace {
+
+constexpr glm::ivec2 kLimitsSize{8, 8};
+
+Camera limitsCamera(const glm::dvec3& position, const glm::dvec3& target, double fov) {
+  Camera camera;
+  camera.position = position;
+  camera.direction = glm::normalize(target - position);
+  camera.up = std::abs(camera.direction.y) > 0.9 ? glm::dvec3(0.0, 0.0, -1.0) : glm::dvec3(0.0, 1.0, 0.0);
+  camera.verticalFov = fov;
+  return camera;
+}
+
+PathTracer::Statistics limitsPath(const StabilityContext& c, const Scene& scene, std::uint32_t samples,
+                                  std::uint32_t bounces = PathTracer::kUnlimited) {
+  PathTracer::Settings settings;
+  settings.size = kLimitsSize;
+  settings.seed = 1;
+  settings.bounces = bounces;
+  PathTracer tracer(c.context, c.programs, scene, settings);
+  tracer.setCamera(scene.cameras.front());
+  tracer.record(samples);
+  return tracer.statistics();
+}
+
+Measurement limitsWithin(const PathTracer::Statistics& s, double expected) {
+  const bool precise = s.meanError.x <= 0.01 * expected;
+  return {expected, precise ? s.mean.x : NAN, 4.0 * s.meanError.x + 1e-4 * expected};
+}
+
+double limitsPicture(const StabilityContext& c, const Scene& scene, const char* technique, double longestEdge) {
+  RenderSettings settings;
+  settings.technique = technique;
+  settings.component = Component::direct;
+  settings.size = kLimitsSize;
+  settings.fullFloatTarget = true;
+  settings.of<RadiosityView::Settings>().solution.patches.longestEdge = longestEdge;
+  settings.of<RadiosityView::Settings>().direct = RadiosityView::Direct::pixels;
+  Renderer renderer(c.context, c.programs, scene, settings);
+  renderer.renderToTheEnd(scene.cameras.front());
+  double sum = 0.0;
+  const Image picture = renderer.readRadiance();
+  for (const glm::vec3& p : picture.pixels) sum += static_cast<double>(p.x);
+  return sum / static_cast<double>(picture.pixels.size());
+}
+
+/// Form factor of an element to a parallel rectangle of sides 2a and 2b at a height, its centre above the element
+/// [Howell B-3].
+double toRectangle(double a, double b, double height) {
+  const double x = a / height, y = b / height, rx = std::sqrt(1.0 + x * x), ry = std::sqrt(1.0 + y * y);
+  return 2.0 / kPi * (x / rx * std::atan(y / rx) + y / ry * std::atan(x / ry));
+}
+
+/// A lamp of length 2 over a floor of albedo 0.5, of radiance 1 over its width; turned about the vertical, so that its
+/// edges are not exact.
+Scene needle(double width, double height) {
+  SceneParts parts("needle");
+  const glm::dvec3 along(std::cos(0.3), 0.0, std::sin(0.3)), across(-std::sin(0.3), 0.0, std::cos(0.3));
+  parts.plate({0, 0, 0}, {0, 0, 2}, {2, 0, 0}, parts.material(glm::vec3(0.5f)));
+  parts.plate({0, height, 0}, 2.0 * along, width * across,
+              parts.material(glm::vec3(0.0f), glm::vec3(static_cast<float>(1.0 / width))));
+  parts.scene().cameras.push_back(limitsCamera({0, 0.5 * height, 0}, {0, 0, 0}, 1e-3));
+  return std::move(parts.scene());
+}
+
+void addNeedles(std::vector<StabilityCase>& cases) {
+  for (const auto& [width, height] : {std::array{1e-3, 0.2}, std::array{1e-4, 0.6}, std::array{1e-6, 0.2}}) {
+    const double expected = 0.5 * toRectangle(1.0, 0.5 * width, height) / width;
+    const std::string parameter = fmt::format("2 x {:g}, {:g} above", width, height);
+    cases.push_back({"path", "a lamp as narrow as a needle over a floor", parameter, [=](const StabilityContext& c) {
+                       return limitsWithin(limitsPath(c, needle(width, height), 1024, 1), expected);
+                     }});
+  }
+}
+
+enum class Flush { point, spot, corner, emissive };
+
+/// A room of albedo 0.6 with the ceiling at y = 0.7 and a lamp in its plane, `below` it.
+Scene flush(Flush kind, double below) {
+  SceneParts parts("flush");
+  const int wall = parts.material(glm::vec3(0.6f));
+  parts.plate({0, -1, 0}, {0, 0, 2}, {2, 0, 0}, wall);
+  parts.plate({0, 0.7, 0}, {2, 0, 0}, {0, 0, 2}, wall);
+  parts.plate({-1, -0.15, 0}, {0, 1.7, 0}, {0, 0, 2}, wall);
+  parts.plate({0, -0.15, -1}, {2, 0, 0}, {0, 1.7, 0}, wall);
+  Scene& scene = parts.scene();
+  const double y = 0.7 - below;
+  switch (kind) {
+    case Flush::point: scene.points.push_back({{0.1, y, 0.2}, glm::vec3(1.0f)}); break;
+    case Flush::spot: scene.spots.push_back({{0.1, y, 0.2}, {0, -1, 0}, glm::vec3(1.0f), 1.2, 1.3}); break;
+    case Flush::corner: scene.points.push_back({{-1.0 + below, y, -1.0 + below}, glm::vec3(1.0f)}); break;
+    case Flush::emissive:
+      parts.plate({0.1, y, 0.2}, {0.3, 0, 0}, {0, 0, 0.3}, parts.material(glm::vec3(0.0f), glm::vec3(5.0f)));
+  }
+  scene.cameras.push_back(limitsCamera({0.2, 0.5, 0.1}, {0.2, -1.0, 0.1}, 0.6));
+  return std::move(scene);
+}
+
+void addFlush(std::vector<StabilityCase>& cases) {
+  const std::array kinds{std::pair{Flush::point, "point"}, std::pair{Flush::spot, "spot"},
+                         std::pair{Flush::corner, "point in a corner"}, std::pair{Flush::emissive, "emissive"}};
+  for (const auto& [kind, name] : kinds)
+    for (const char* technique : {"path", "direct", "rsm", "irradiance-cache", "radiosity"}) {
+      if (kind == Flush::emissive && std::string_view(technique) != "path") continue;
+      cases.push_back({technique, "a lamp in the ceiling's plane, against 1e-5 lower", name,
+                       [kind = kind, technique](const StabilityContext& c) {
+                         const auto mean = [&](double below) {
+                           return std::string_view(technique) == "path"
+                                      ? limitsPath(c, flush(kind, below), 256, 1).mean.x
+                                      : limitsPicture(c, flush(kind, below), technique, 2.0);
+                         };
+                         return Measurement{1.0, mean(0.0) / mean(1e-5), 5e-3};
+                       }});
+    }
+}
+
+/// A slab below y = 0 of albedo 0.8 under a sun at 40 degrees, seen at 25.
+Scene denseSlab(double extinction, double halfWidth, bool grid) {
+  SceneParts parts("dense");
+  const int boundary = parts.material(glm::vec3(0.0f));
+  parts.materialAt(boundary).bsdf = Bsdf::none;
+  parts.materialAt(boundary).interior = 0;
+  parts.box({-halfWidth, -1, -halfWidth}, {halfWidth, 0, halfWidth}, boundary);
+  Scene& scene = parts.scene();
+  Medium medium;
+  medium.scattering = glm::vec3(static_cast<float>(0.8 * extinction));
+  medium.absorption = glm::vec3(static_cast<float>(0.2 * extinction));
+  if (grid)
+    medium.grid =
+        DensityGrid{{4, 4, 4}, std::vector<float>(64, 1.0f), {-halfWidth, -1, -halfWidth}, {halfWidth, 0, halfWidth}};
+  scene.media = {medium};
+  const double sun = 40.0 * kPi / 180.0, view = 25.0 * kPi / 180.0;
+  scene.sun = DirectionalLight{{std::sin(sun), -std::cos(sun), 0.0}, glm::vec3(1.0f)};
+  scene.cameras.push_back(limitsCamera({-0.3 * std::tan(view), 0.3, 0.0}, {0, 0, 0}, 1e-3));
+  return std::move(scene);
+}
+
+void addDense(std::vector<StabilityCase>& cases) {
+  // Light scattered once: 0.8 / (4 pi) mu0 / (mu + mu0); all light: times H(mu) H(mu0) [Chandrasekhar1960].
+  struct Dense {
+    double extinction, halfWidth;
+    bool grid;
+  };
+  for (const Dense& d : {Dense{1e6, 1.0, false}, Dense{1e6, 10.0, false}, Dense{1e6, 100.0, false},
+                         Dense{3e3, 30.0, true}, Dense{3e3, 300.0, true}})
+    for (const bool once : {true, false}) {
+      if (d.grid && !once) continue;
+      cases.push_back({"path", fmt::format("a dense medium{} under the sun, {}", d.grid ? " on a grid" : "",
+                                           once ? "scattered once" : "all light"),
+                       fmt::format("{:g} free paths", d.extinction * d.halfWidth), [=](const StabilityContext& c) {
+                         return limitsWithin(limitsPath(c, denseSlab(d.extinction, d.halfWidth, d.grid),
+                                                        once ? 512u : 4096u, once ? 1u : PathTracer::kUnlimited),
+                                             once ? 0.0291613 : 0.0697929);
+                       }});
+    }
+}
+
+/// Fog of extinction 1 and 2 across around fog of 3 and 1 across, in light of radiance 1.
+Scene nested(bool denseFirst) {
+  SceneParts parts("nested");
+  const int first = parts.material(glm::vec3(0.0f)), second = parts.material(glm::vec3(0.0f)),
+            dense = denseFirst ? first : second, thin = denseFirst ? second : first;
+  parts.box({-1, -1, -1}, {1, 1, 1}, thin);
+  parts.box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}, dense);
+  Scene& scene = parts.scene();
+  scene.media.resize(2);
+  for (const int m : {first, second}) {
+    Material& material = parts.materialAt(m);
+    material.bsdf = Bsdf::none;
+    material.interior = m - first;
+    scene.media[static_cast<std::size_t>(material.interior)].absorption = glm::vec3(m == dense ? 3.0f : 1.0f);
+  }
+  scene.environment = Environment{glm::vec3(1.0f), {}, 0.0};
+  scene.cameras.push_back(limitsCamera({0.01, 0.02, 3}, {0.01, 0.02, 0}, 1e-3));
+  return std::move(scene);
+}
+
+}  // namespace
+
+void addLimitCases(std::vector<StabilityCase>& cases) {
+  addNeedles(cases);
+  addFlush(cases);
+  addDense(cases);
+  for (const bool denseFirst : {false, true})
+    cases.push_back({"path", "a medium within a medium without priorities: exp(-4)",
+                     denseFirst ? "inner named first" : "outer named first", [=](const StabilityContext& c) {
+                       const PathTracer::Statistics s = limitsPath(c, nested(denseFirst), 16384);
+                       return Measurement{std::exp(-4.0), s.mean.x, 4.0 * s.meanError.x};
+                     }});
+  cases.push_back({"path", "four samples that find no light: relative error", "optical depth 1e-6",
+                   [](const StabilityContext& c) {
+                     Scene thin = denseSlab(1e-6, 1.0, false);
+                     return Measurement{1.0, std::min(limitsPath(c, thin, 4, 1).relativeError, 1e9), 0.0,
+                                        Rule::atLeast};
+                   }});
+}
+
+}  // namespace lucerna::demo::bench

@@ -1,0 +1,39 @@
+#include "irradiance_cache/reflections.hpp"
+
+#include "gl/pass.hpp"
+#include "shared/bindings.h"
+
+namespace lucerna {
+
+namespace {
+constexpr int kReflectionGroup = 8;
+constexpr double kRaysOfEach = 4.0;  ///< on average: it passes mirrors and glass, and lamps are looked for at its end
+}  // namespace
+
+Reflections::Reflections(gl::ProgramLibrary& programs, const Scene& scene, const gl::ShaderFlags& flags, int rays,
+                         double unmeasured)
+    : rays_(rays),
+      lamps_((scene.sun ? 1 : 0) + static_cast<int>(scene.spots.size() + scene.points.size())),
+      chunks_(unmeasured),
+      program_(&programs.loadCompute(
+          "cache reflections", "irradiance_cache/reflect.comp",
+          gl::with(flags, {{"FRESNEL_AMPLITUDES", 0}, {"FRESNEL_SCHLICK", 0}, {"LAMPS", lamps_}}))) {}
+
+void Reflections::resize(glm::ivec2 size) { radiance_ = gl::Texture("reflections", gl::Format::rgba32f, size); }
+
+void Reflections::record(const std::function<void()>& bind) {
+  const gl::ComputePass pass("cache reflections", gl::Barrier::textureFetch | gl::Barrier::image, gl::Barrier::image);
+  program_->use();
+  bind();
+  program_->set("rays", rays_);
+  radiance_.bindImage(0, gl::Access::write);
+  const double iterations = (1.0 + kRaysOfEach * rays_ * (1 + lamps_)) * gl::kIterationsOfRay;
+  chunks_.forEach(radiance_.size2d(), iterations, kReflectionGroup, [&](glm::ivec2 corner, glm::ivec2 size) {
+    program_->set("firstPixel", corner);
+    pass.dispatch(glm::ivec3(size, 1), glm::ivec3(kReflectionGroup, kReflectionGroup, 1));
+  });
+}
+
+void Reflections::bindForShading() const { radiance_.bind(UNIT_REFLECTED); }
+
+}  // namespace lucerna

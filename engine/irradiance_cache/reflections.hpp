@@ -1,0 +1,36 @@
+// What coats, mirrors and glass show of the scene in the technique irradiance-cache: rays from each of their pixels,
+// lit at their ends by the records (shaders/irradiance_cache/reflect.comp). Lamps' highlights are forward shading's.
+#pragma once
+
+#include "gl/objects.hpp"
+#include "gl/picture_chunks.hpp"
+#include "gl/program.hpp"
+#include "scene/features.hpp"
+#include "scene/scene.hpp"
+
+#include <functional>
+
+namespace lucerna {
+
+class Reflections {
+ public:
+  static bool isNeeded(const SceneFeatures& features, int rays) { return features.specular && rays > 0; }
+  /// flags: of programs that trace rays and look up records. rays: per pixel.
+  Reflections(gl::ProgramLibrary& programs, const Scene& scene, const gl::ShaderFlags& flags, int rays,
+              double unmeasured);
+
+  void resize(glm::ivec2 size);
+  /// For the view that the records were last updated for. bind: scene, records and their constants.
+  void record(const std::function<void()>& bind);
+  void bindForShading() const;  ///< unit UNIT_REFLECTED for shaders/irradiance_cache/surface.frag
+  double largestIterations() const { return chunks_.largestIterations(); }
+  std::size_t gpuBytes() const { return radiance_.bytes(); }
+
+ private:
+  int rays_, lamps_;
+  gl::PictureChunks chunks_;
+  gl::Texture radiance_;  ///< W per square scene unit and steradian, of each pixel
+  const gl::Program* program_;
+};
+
+}  // namespace lucerna

@@ -1,0 +1,195 @@
+// What coats, mirrors and glass reflect and let through at each pixel, but lamps' highlights, which forward shading
+// adds: along rays drawn from the coat's lobe, or along the smooth surface's two directions, up to the first rough
+// surface. That one shows its emission, the lamps that reach it and the irradiance of the records around it, as if
+// matte. Where there are none, paths go on. Beyond all surfaces is the environment.
+// Rough coats reflect the pixel's own irradiance, as if light came from all sides alike: their lobe is as wide.
+layout(local_size_x = 8, local_size_y = 8) in;
+#include "shared/bindings.h"
+#include "shared/path_tracer.h"
+layout(std140, binding = BLOCK_CACHE_PATHS) uniform PathBlock { PathConstants tracer; };
+#include "rays/random.glsl"
+#include "rays/bsdf.glsl"
+#include "pathtracer/fresnel.glsl"
+#include "rays/materials.glsl"
+#include "rays/bvh.glsl"
+#include "rays/environment.glsl"
+#include "lib/spot.glsl"
+#include "irradiance_cache/lookup.glsl"
+#include "irradiance_cache/seen.glsl"
+layout(binding = 0) writeonly restrict uniform image2D reflected;
+uniform ivec2 firstPixel;
+uniform int rays;   // per pixel
+#if LAMPS
+layout(std430, binding = 4) readonly restrict buffer LampBlock { PathLight lamps[]; };  // the first LAMPS
+#endif
+
+const float kRays = 0.25, kNoRays = 0.5;  // alpha up to which rays alone show a coat, and from which none do
+const uint kMostSurfaces = 12u;           // along a ray
+const uint kMostBounces = 4u;             // beyond records
+
+bool counts(uint scatterings) { return scatterings >= tracer.minScatterings && scatterings <= tracer.maxScatterings; }
+
+// Irradiance from sun, spots and omnidirectional lamps.
+vec3 lampIrradiance(Surface surface, uint triangle) {
+  vec3 sum = vec3(0.0);
+#if LAMPS
+  for (int i = 0; i < lamps.length() && i < LAMPS; ++i) {
+    PathLight lamp = lamps[i];
+    bool infinite = lamp.kind == PATH_LIGHT_SUN;
+    vec3 away = infinite ? -lamp.b : lamp.a - surface.position;
+    float distance2 = infinite ? 1.0 : dot(away, away);
+    vec3 direction = away * inversesqrt(max(distance2, 1e-30)), arriving = lamp.c / max(distance2, 1e-30);
+    if (lamp.kind == PATH_LIGHT_SPOT)
+      arriving *= spotFalloff(-dot(direction, lamp.b), uintBitsToFloat(lamp.p), uintBitsToFloat(lamp.q));
+    float cosine = dot(direction, surface.normal);
+    if (!(cosine > 0.0 && dot(direction, surface.geometricNormal) > 0.0) || all(equal(arriving, vec3(0.0)))) continue;
+    vec3 start = offsetRay(surface.position, surface.geometricNormal, surface.magnitude);
+    Ray ray = infinite ? Ray(start, 0.0, direction, 3e38) : Ray(start, 0.0, lamp.a - start, 1.0);
+    if (!anyHitToLamp(ray, triangle)) sum += cosine * arriving;
+  }
+#endif
+  return sum;
+}
+
+// Whether a ray passes on at a surface, as at a mirror. Sets its new direction, and the side it leaves on.
+bool passes(Surface surface, bool mirrors, inout vec3 throughput, inout vec3 direction, out float side) {
+  PathMaterial material = materials[surface.material];
+  side = 1.0;
+  if (material.kind == PATH_NONE) {
+    side = -1.0;
+    return true;
+  }
+  vec3 normal = dot(surface.normal, direction) < 0.0 ? surface.normal : surface.geometricNormal;
+  float cosI = min(-dot(direction, normal), 1.0), cosT;
+  if (material.kind == PATH_MIRROR || (material.kind == PATH_CONDUCTOR && material.roughness == 0.0)) {
+    throughput *= material.kind == PATH_MIRROR ? material.specular : schlick(material.specular, cosI);
+  } else if (material.kind == PATH_DIELECTRIC) {
+    float eta = surface.front ? 1.0 / material.ior : material.ior;
+    float reflectance = fresnelDielectric(cosI, eta, cosT);
+    if (mirrors) throughput *= reflectance;
+    else if (reflectance < 1.0) {
+      if (surface.front) throughput *= 1.0 - reflectance;  // light that is thrown back inside comes out elsewhere
+      direction = normalize(eta * direction + (eta * cosI - cosT) * normal);
+      side = -1.0;
+      return true;
+    }
+  } else {
+    return false;
+  }
+  direction = normalize(direction + 2.0 * cosI * normal);
+  if (!(dot(direction, surface.geometricNormal) > 0.0)) direction = reflect(direction, surface.geometricNormal);
+  return true;
+}
+
+// Radiance along a ray that has left a surface of the pixel; scatterings: so far.
+vec3 radianceAlong(Ray ray, uint triangle, vec3 throughput, uint scatterings, PathNumbers numbers) {
+  vec3 sum = vec3(0.0);
+  bool last = false;  // the ray only collects what shines at its end
+  uint bounces = 0u;
+  for (uint k = 0u; k < kMostSurfaces; ++k) {
+    Hit hit = closestHit(ray, triangle);
+    if (hit.triangle == kNoHit) {
+#if ENVIRONMENT
+      if (counts(scatterings)) sum += throughput * environmentRadiance(ray.direction);
+#endif
+      break;
+    }
+    Surface surface = surfaceAt(hit.triangle, hit.barycentrics, ray.direction);
+    triangle = hit.triangle;
+#if EMISSION
+    if (counts(scatterings)) sum += throughput * emissionAt(surface.material, triangle, hit.barycentrics);
+#endif
+    if (last) break;
+    float side;
+    vec3 direction = ray.direction;
+    if (!passes(surface, false, throughput, direction, side)) {
+      ++scatterings;
+      if (scatterings > tracer.maxScatterings) break;
+      throughput *= wholeAlbedoAt(surface);
+      if (counts(scatterings)) sum += throughput / kPi * lampIrradiance(surface, triangle);
+      bool found;
+      vec3 kept = cachedIrradiance(surface.position + cache.rayOrigin, surface.normal, found);
+      if (found) {
+        sum += throughput / kPi * kept;
+        last = tracer.minScatterings > 1u;  // what shines directly is in no record
+        if (!last) break;
+      }
+      if (++bounces > kMostBounces) break;
+      direction = cosineSample(surface.normal, randomPair(numbers, 1u + k, kPurposeScatter));
+      if (!(dot(direction, surface.geometricNormal) > 0.0)) break;
+    } else if (materials[surface.material].kind != PATH_NONE) {
+      ++scatterings;
+    }
+    ray = Ray(offsetRay(surface.position, side * surface.geometricNormal, surface.magnitude), 0.0, direction, 3e38);
+  }
+  return sum;
+}
+
+// What the pixel's surface shows of its surroundings.
+vec3 reflectedBy(Surface surface, uint triangle, vec3 view, PathNumbers numbers) {
+  vec3 sum = vec3(0.0);
+  PathMaterial material = materials[surface.material];
+  if (material.kind == PATH_DIFFUSE || material.kind == PATH_NONE) return sum;
+  bool isSmooth = material.kind != PATH_COATED && (material.kind != PATH_CONDUCTOR || material.roughness == 0.0);
+  if (isSmooth) {
+    bool isGlass = material.kind == PATH_DIELECTRIC;
+    for (int way = 0; way < 2; ++way) {
+      if (way == 1 && !isGlass) break;
+      vec3 throughput = vec3(1.0), direction = view;
+      float side;
+      if (!passes(surface, way == 0, throughput, direction, side)) return sum;
+      if (isGlass && way == 1 && side > 0.0) break;  // total reflection has been counted
+      vec3 start = offsetRay(surface.position, side * surface.geometricNormal, surface.magnitude);
+      sum += radianceAlong(Ray(start, 0.0, direction, 3e38), triangle, throughput, 1u,
+                           PathNumbers(numbers.pixel, uint(way), numbers.seed));
+    }
+    return sum;
+  }
+#if COATS
+  Coat coat = coatAt(surface);
+  if (all(equal(coat.specular, vec3(0.0)))) return sum;
+  vec3 t, b, normal = dot(surface.normal, view) < 0.0 ? surface.normal : surface.geometricNormal;
+  tangentFrame(normal, t, b);
+  vec3 o = -vec3(dot(view, t), dot(view, b), dot(view, normal));
+  float ofRays = 1.0 - smoothstep(kRays, kNoRays, coat.alpha);
+  if (ofRays < 1.0) {
+    bool found;
+    vec3 kept = cachedIrradiance(surface.position + cache.rayOrigin, surface.normal, found);
+    sum += (1.0 - ofRays) / kPi * coatAlbedo(coat, o.z) * kept;
+  }
+  if (!(ofRays > 0.0)) return sum;
+  int count = coat.alpha < 0.01 ? 1 : rays;  // a lobe narrower than a pixel needs no more
+  vec2 start = randomPair(numbers, 0u, kPurposeScatter);
+  for (int i = 0; i < rays && i < count; ++i) {
+    vec3 h = ggxSample(o, coat.alpha, fract(start + float(i) * vec2(0.7548776662, 0.5698402910)));  // [Roberts2018]
+    vec3 li = reflect(-o, h);
+    if (!(li.z > 0.0)) continue;
+    vec3 direction = normalize(li.x * t + li.y * b + li.z * normal);
+    if (!(dot(direction, surface.geometricNormal) > 0.0)) continue;
+    float pdf, facets = ggxReflect(o, li, coat.alpha, pdf);
+    if (!(pdf > 0.0)) continue;
+    vec3 throughput = ofRays * facets / (pdf * float(count)) * coatFresnel(coat, clamp(dot(o, h), 0.0, 1.0));
+    Ray ray = Ray(offsetRay(surface.position, surface.geometricNormal, surface.magnitude), 0.0, direction, 3e38);
+    sum += radianceAlong(ray, triangle, throughput, 1u, PathNumbers(numbers.pixel, uint(i), numbers.seed));
+  }
+#endif
+  return sum;
+}
+
+void main() {
+  ivec2 pixel = firstPixel + ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(pixel, tracer.picture.xy))) return;
+  int index = pixel.y * tracer.picture.x + pixel.x;
+  vec3 sum = vec3(0.0);
+  Hit hit;
+  Surface surface;
+  if (seenAt(index, hit, surface)) {
+    vec3 eye, view;
+    rayOf(index, eye, view);
+#if NORMAL_MAPS
+    applyNormalMap(surface, hit.triangle);
+#endif
+    sum = reflectedBy(surface, hit.triangle, view, PathNumbers(uint(index), 0u, tracer.seed));
+  }
+  imageStore(reflected, pixel, vec4(sum, 0.0));
+}

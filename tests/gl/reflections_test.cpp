@@ -1,0 +1,250 @@
+// What coats, mirrors and glass show in the technique irradiance-cache: known answers, and the path tracer's pictures.
+#include "irradiance_cache/settings.hpp"
+#include "support/coat_reference.hpp"
+#include "support/media_scenes.hpp"
+#include "support/path_scenes.hpp"
+#include "support/pixel_rays.hpp"
+#include "support/small_scenes.hpp"
+
+#include "base/angles.hpp"
+#include "base/log.hpp"
+#include "render/renderer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lucerna::test {
+namespace {
+
+class ReflectionsTest : public PathTest {
+ protected:
+  static RenderSettings settings(std::string_view technique = "irradiance-cache") {
+    RenderSettings s;
+    s.technique = technique;
+    s.size = {32, 32};
+    s.fullFloatTarget = true;
+    return s;
+  }
+  static Image drawn(const Scene& scene, const Camera& camera, const RenderSettings& s = settings()) {
+    Renderer renderer(context(), library(), scene, s);
+    renderer.renderToTheEnd(camera);
+    return renderer.readRadiance();
+  }
+  Image traced(const Scene& scene, const Camera& camera, std::uint32_t samples) {
+    PathTracer::Settings s = sized(32);
+    s.pixelCentres = true;
+    return tracer(scene, camera, s, samples).mean();
+  }
+  static glm::dvec3 mean(const Image& image) {
+    glm::dvec3 sum(0.0);
+    for (const glm::vec3& p : image.pixels) sum += glm::dvec3(p);
+    return sum / static_cast<double>(image.pixels.size());
+  }
+  /// A floor of one material under a sky of one radiance.
+  static SceneBuilder floorUnderSky(const Material& material, float radiance) {
+    SceneBuilder builder;
+    const int floor = builder.material(material.diffuse);
+    const std::string name = builder.materialAt(floor).name;
+    builder.materialAt(floor) = material;
+    builder.materialAt(floor).name = name;
+    builder.plate({0, 0, 0}, {0, 0, 40}, {40, 0, 0}, floor);
+    builder.scene().sun.reset();
+    builder.scene().environment.emplace().radiance = glm::vec3(radiance);
+    return builder;
+  }
+  static Material coated(const glm::vec3& base, const glm::vec3& specular, float alpha, Bsdf bsdf = Bsdf::diffuse) {
+    Material material;
+    material.bsdf = bsdf;
+    material.diffuse = base;
+    material.specular = specular;
+    material.roughness = alpha;
+    return material;
+  }
+};
+
+TEST_F(ReflectionsTest, AMirrorShowsTheSky) {
+  const Camera camera = lookingAt({0, 2, 4}, {0, 0, 0}, 0.3);
+  const Image image =
+      drawn(floorUnderSky(coated(glm::vec3(0.5f), {0.9f, 0.6f, 0.3f}, 0.0f, Bsdf::mirror), 2.0f).scene(), camera);
+  for (const glm::vec3& pixel : image.pixels)
+    for (int c = 0; c < 3; ++c) ASSERT_NEAR(pixel[c], 2.0f * glm::vec3(0.9f, 0.6f, 0.3f)[c], 1e-4f);
+}
+
+// Of every roughness: rays, rays and records, records alone.
+TEST_F(ReflectionsTest, CoatsReflectAnEvenSkyByTheirAlbedo) {
+  const double angle = 0.8;
+  const Camera camera = lookingAt({4.0 * std::sin(angle), 4.0 * std::cos(angle), 0}, {0, 0, 0}, 0.05);
+  for (const float alpha : {0.001f, 0.1f, 0.35f, 0.8f})
+    for (const float base : {0.0f, 0.6f}) {
+      RenderSettings s = settings();
+      s.of<IrradianceCacheSettings>().reflections = 64;
+      const glm::dvec3 seen =
+          mean(drawn(floorUnderSky(coated(glm::vec3(base), {0.04f, 0.3f, 0.9f}, alpha), 1.0f).scene(), camera, s));
+      const reference::CoatedSurface surface(glm::dvec3(base), {0.04, 0.3, 0.9}, static_cast<double>(alpha));
+      const glm::dvec3 coat = surface.albedo(std::cos(angle));
+      for (int c = 0; c < 3; ++c) {
+        const double expected = coat[c] + static_cast<double>(base) * (1.0 - coat[c]);
+        EXPECT_NEAR(seen[c], expected, 0.01 * expected + 1e-3) << alpha << " " << base << " " << c;
+      }
+    }
+}
+
+// A ball of glass hides nothing of an even sky: what it does not reflect, it lets through.
+TEST_F(ReflectionsTest, GlassIsClear) {
+  Scene scene;
+  addSphere(scene, glm::dvec3(0.0), 1.0, 4, addBoundary(scene, Bsdf::dielectric, 1.5, -1));
+  scene.environment.emplace().radiance = glm::vec3(3.0f);
+  const Image image = drawn(scene, lookingAt({0, 0, 6}, {0, 0, 0}, 0.25));
+  EXPECT_NEAR(image.at(16, 16).y, 3.0f, 1e-3f);
+  EXPECT_NEAR(mean(image).y, 3.0, 0.02);  // at the rim some rays are caught inside
+}
+
+/// The open box with a back wall that reflects.
+Scene boxWithMirror(const Material& wall) {
+  Scene scene = openBox();
+  scene.materials.push_back(wall);
+  scene.meshes[1].material = static_cast<int>(scene.materials.size()) - 1;
+  return scene;
+}
+
+// The sunlit box in a mirror and in metal: direct light at the ends of rays, and the records' light. They are dim: what
+// they throw on other walls is another light in the path tracer.
+TEST_F(ReflectionsTest, AWallShowsTheBoxAsThePathTracerDoes) {
+  for (const float alpha : {0.0f, 0.15f}) {
+    const Scene scene = boxWithMirror(coated(glm::vec3(0.0f), glm::vec3(0.3f), alpha, Bsdf::conductor));
+    RenderSettings s = settings();
+    s.of<IrradianceCacheSettings>().reflections = 16;
+    const Image image = drawn(scene, openBoxCamera(), s), expected = traced(scene, openBoxCamera(), 512);
+    double squares = 0.0, all = 0.0;
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+      const glm::dvec3 off = glm::dvec3(image.pixels[i]) - glm::dvec3(expected.pixels[i]);
+      squares += glm::dot(off, off);
+      all += glm::dot(glm::dvec3(expected.pixels[i]), glm::dvec3(expected.pixels[i]));
+    }
+    EXPECT_LT(std::sqrt(squares / all), 0.15) << alpha;
+    const double ratio = mean(image).y / mean(expected).y;
+    EXPECT_NEAR(ratio, 1.0, 0.04) << alpha;
+  }
+}
+
+TEST_F(ReflectionsTest, AllIsDirectPlusIndirect) {
+  Scene scene = boxWithMirror(coated(glm::vec3(0.0f), glm::vec3(0.9f), 0.0f, Bsdf::mirror));
+  scene.environment.emplace().radiance = glm::vec3(0.4f);
+  glm::dvec3 parts[3];
+  for (const Component component : {Component::all, Component::direct, Component::indirect}) {
+    RenderSettings s = settings();
+    s.component = component;
+    s.of<IrradianceCacheSettings>().samples = 2048;
+    parts[static_cast<int>(component)] = mean(drawn(scene, openBoxCamera(), s));
+  }
+  const glm::dvec3 all = parts[static_cast<int>(Component::all)],
+                   sum = parts[static_cast<int>(Component::direct)] + parts[static_cast<int>(Component::indirect)];
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(sum[c], all[c], 0.02 * all[c]) << c;
+}
+
+TEST_F(ReflectionsTest, NothingOfThemIsThereUnlessNeeded) {
+  const auto left = [](const Scene& scene, int rays) {
+    RenderSettings s = settings();
+    s.of<IrradianceCacheSettings>().reflections = rays;
+    const std::vector<std::string> names = Renderer(context(), library(), scene, s).leftOut();
+    return std::ranges::count(names, "reflections") == 1;
+  };
+  const Scene shiny = boxWithMirror(coated(glm::vec3(0.3f), glm::vec3(0.04f), 0.2f));
+  EXPECT_TRUE(left(openBox(), 4));
+  EXPECT_TRUE(left(shiny, 0));
+  EXPECT_FALSE(left(shiny, 4));
+}
+
+// A technique that does not draw what metals and glass reflect says so, by name.
+TEST_F(ReflectionsTest, ATechniqueWithoutThemNamesTheMaterials) {
+  Scene scene = boxWithMirror(coated(glm::vec3(0.0f), glm::vec3(0.9f), 0.1f));
+  scene.materials.back().name = "chrome";
+  const auto warned = [&](std::string_view technique) {
+    clearLoggedWarnings();
+    const Renderer renderer(context(), library(), scene, settings(technique));
+    const std::vector<std::string> warnings = loggedWarnings();
+    return std::ranges::any_of(warnings, [](const std::string& w) { return w.find("'chrome'") != std::string::npos; });
+  };
+  EXPECT_TRUE(warned("direct"));
+  EXPECT_TRUE(warned("rsm"));
+  EXPECT_FALSE(warned("irradiance-cache"));
+}
+
+// --------------------------------------------------------------------------------------------------------------- lamps
+
+class ManyLamps : public ReflectionsTest {
+ protected:
+  /// Points 2 above a floor, in rows.
+  static SceneBuilder floorUnderLamps(int lamps) {
+    SceneBuilder builder;
+    builder.plate({0, 0, 0}, {0, 0, 10}, {10, 0, 0}, builder.material(glm::vec3(0.5f)));
+    builder.scene().sun.reset();
+    for (int i = 0; i < lamps; ++i)
+      builder.scene().points.push_back({{-4.0 + 0.8 * (i % 10), 2.0, -4.0 + 0.8 * (i / 10)}, glm::vec3(0.5f)});
+    return builder;
+  }
+};
+
+// However many have shadow maps.
+TEST_F(ManyLamps, AllOfThemShine) {
+  for (const int lamps : {5, 100})
+    for (const int shadows : {0, 4, 16}) {
+      Scene scene = floorUnderLamps(lamps).scene();
+      if (lamps == 5) scene.spots.push_back({{0, 3, 0}, {0, -1, 0}, glm::vec3(2.0f), 0.3, 0.9});
+      RenderSettings s = settings("direct");
+      s.lights.shadows = shadows;
+      const Camera camera = lookingAt({0, 3, 2}, {0, 0, 0}, 0.4);
+      const Image image = drawn(scene, camera, s);
+      for (int y = 0; y < 32; y += 5)
+        for (int x = 0; x < 32; x += 5) {
+          const glm::dvec3 p = onPlane(camera, pixelRay(camera, x, y, glm::ivec2(32)), 0.0);
+          double irradiance = 0.0;
+          for (const PointLight& lamp : scene.points) {
+            const glm::dvec3 away = lamp.position - p;
+            irradiance += 0.5 * away.y / std::pow(glm::length(away), 3.0);
+          }
+          for (const SpotLight& lamp : scene.spots) {
+            const glm::dvec3 away = lamp.position - p;
+            const double cosine = away.y / glm::length(away),
+                         t = std::clamp((cosine - std::cos(0.9)) / (std::cos(0.3) - std::cos(0.9)), 0.0, 1.0);
+            irradiance += 2.0 * t * t * (3.0 - 2.0 * t) * cosine / glm::dot(away, away);
+          }
+          const double expected = 0.5 / kPi * irradiance;
+          ASSERT_NEAR(image.at(x, y).y, expected, 4e-3 * expected) << lamps << " " << shadows << " " << x << " " << y;
+        }
+    }
+}
+
+// The lamp's rays are nearly parallel; a cube map's face would have a texel for all of the card.
+TEST_F(ManyLamps, FarOnesCastShadowsToo) {
+  SceneBuilder builder;
+  const int grey = builder.material(glm::vec3(0.5f));
+  builder.plate({0, 0, 0}, {0, 0, 2}, {2, 0, 0}, grey);
+  builder.plate({0, 0.3, 0}, {0, 0, 0.6}, {0.6, 0, 0}, grey);
+  builder.scene().sun.reset();
+  for (const double distance : {100.0, 1000.0}) {
+    builder.scene().points = {{{0.0, distance, 0.0}, glm::vec3(static_cast<float>(distance * distance))}};
+    // Below the card; beside it.
+    const Image below = drawn(builder.scene(), lookingAt({1.0, 0.15, 0}, {0, 0, 0}, 0.02), settings("direct")),
+                beside = drawn(builder.scene(), lookingAt({1.0, 0.5, 0}, {0.7, 0, 0}, 0.02), settings("direct"));
+    EXPECT_EQ(below.at(16, 16).y, 0.0f) << distance;
+    EXPECT_NEAR(beside.at(16, 16).y, 0.5 / kPi, 1e-3) << distance;
+  }
+}
+
+// A box of 2 m on a plain of 5 km has its shadow: one map for all would have a texel for it.
+TEST_F(ManyLamps, TheSunsShadowOfASmallThingOnAWidePlain) {
+  SceneBuilder builder;
+  builder.plate({0, 0, 0}, {0, 0, 5000}, {5000, 0, 0}, builder.material(glm::vec3(0.5f)));
+  builder.plate({0, 2, 0}, {0, 0, 2}, {2, 0, 0}, builder.material(glm::vec3(0.5f)));
+  builder.sun({0.0, -1.0, 0.0}, glm::vec3(2.0f));
+  const Image below = drawn(builder.scene(), lookingAt({6.0, 3.0, 0}, {0, 0, 0}, 0.8), settings("direct")),
+              beside = drawn(builder.scene(), lookingAt({6.0, 3.0, 3.0}, {0, 0, 3.0}, 0.8), settings("direct"));
+  EXPECT_EQ(below.at(16, 16).y, 0.0f);
+  EXPECT_NEAR(beside.at(16, 16).y, 1.0 / kPi, 1e-3);
+}
+
+}  // namespace
+}  // namespace lucerna::test
