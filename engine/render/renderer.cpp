@@ -53,14 +53,15 @@ std::vector<std::string_view> environmentTechniques() {
   return names;
 }
 
-/// Names of the drawn materials that show mostly what they reflect.
-std::vector<std::string> reflectingMaterials(const Scene& scene) {
+/// Names of the drawn materials of a kind.
+template <class Kind>
+std::vector<std::string> namesOfDrawn(const Scene& scene, const Kind& isOfKind) {
   std::set<int> drawn;
   for (const Mesh& mesh : scene.meshes)
     if (mesh.indexCount > 0) drawn.insert(mesh.material);
   std::vector<std::string> names;
   for (const int i : drawn)
-    if (const Material& material = scene.materials[static_cast<std::size_t>(i)]; isMostlyReflection(material))
+    if (const Material& material = scene.materials[static_cast<std::size_t>(i)]; isOfKind(material))
       names.push_back("'" + material.name + "'");
   return names;
 }
@@ -120,12 +121,17 @@ void Renderer::warnOfWhatIsLeftOut(const TechniqueEntry& technique) const {
                fmt::join(environmentTechniques(), ", "));
   const gl::ShaderFlags flags = technique_ ? technique_->surfaceFlags() : gl::ShaderFlags{};
   const bool reflects = std::ranges::count(flags, std::pair<std::string, int>("INDIRECT_SPECULAR", 1)) > 0;
-  const std::vector<std::string> reflecting = reflectingMaterials(gpuScene_->scene());
+  const std::vector<std::string> reflecting = namesOfDrawn(gpuScene_->scene(), isMostlyReflection);
   if (!reflects && settings_.component != Component::direct && !reflecting.empty())
     logWarning(
-        "technique {}: of metals, mirrors and glass only lamps' highlights are drawn, not what they reflect or "
-        "let through: {} (irradiance-cache and path do)",
-        technique.name, fmt::join(reflecting, ", "));
+        "technique {}: what surfaces reflect or let through is left out{}: {} (irradiance-cache and path draw it)",
+        technique.name, geometry_ ? ", they look matt" : ", but lamps' highlights", fmt::join(reflecting, ", "));
+  const std::vector<std::string> bodies = namesOfDrawn(gpuScene_->scene(), [](const Material& material) {
+    return material.bsdf == Bsdf::dielectric && material.interior >= 0;
+  });
+  if (!bodies.empty())
+    logWarning("technique {}: the medium inside of a body, its colour too, is left out: {} (path draws it)",
+               technique.name, fmt::join(bodies, ", "));
   if (features_.environment && lacksLight)
     logWarning("technique {}: the environment lights nothing ({} support it)", technique.name,
                fmt::join(environmentTechniques(), ", "));

@@ -100,7 +100,7 @@ bool isMostlyReflection(const Material& material) {
   if (!hasCoat(material)) return false;
   const glm::vec3 coat = meanCoatReflectance(material.specular, material.roughness),
                   base = (1.0f - coat) * material.diffuse;
-  return coat.x + coat.y + coat.z > base.x + base.y + base.z && coat.x + coat.y + coat.z > 0.3f;
+  return coat.x + coat.y + coat.z > base.x + base.y + base.z;
 }
 
 float alphaOfExponent(float exponent) { return std::sqrt(2.0f / (std::max(exponent, 0.0f) + 2.0f)); }
