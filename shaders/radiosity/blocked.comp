@@ -17,7 +17,7 @@ void main() {
   Ray ray;
   ray.origin = offsetRay(r.origin.xyz, r.normal.xyz, r.normal.w);
   ray.tMin = 0.0;
-  ray.direction = r.direction.xyz;
-  ray.tMax = 0.99999;
-  blocked[index] = anyHit(ray, uint(r.origin.w)) ? 1u : 0u;  // bounded: a patch's number
+  ray.direction = r.direction.xyz + (r.origin.xyz - ray.origin);
+  ray.tMax = 1.0;
+  blocked[index] = anyHitToLamp(ray, uint(r.origin.w)) ? 1u : 0u;  // bounded: a patch's number
 }

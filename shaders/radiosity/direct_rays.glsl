@@ -66,7 +66,7 @@ vec3 directIrradiance(vec3 position, vec3 normal, vec3 face, float plane, float 
       Ray ray;
       ray.origin = start;
       ray.tMin = 0.0;
-      ray.tMax = 0.9999;
+      ray.tMax = 1.0;
       float weight = 1.0;
       if (kind == 0) {
         vec3 to = light.a.xyz + xi.x * light.b.xyz + xi.y * light.c.xyz - p;
@@ -80,7 +80,7 @@ vec3 directIrradiance(vec3 position, vec3 normal, vec3 face, float plane, float 
         ray.direction = light.a.xyz - start;
       }
       all += weight;
-      if (weight > 0.0 && !anyHit(ray, kNoHit)) open += weight;
+      if (weight > 0.0 && !anyHitToLamp(ray, kNoHit)) open += weight;
     }
     vec3 arriving = all > 0.0 ? unblocked * (open / all) : vec3(0.0);
     sum += arriving;
