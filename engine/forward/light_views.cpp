@@ -40,6 +40,10 @@ glm::dmat4 view(const LightViews& views, const glm::dvec3& axis, const glm::dvec
          glm::lookAt(views.position, views.position + axis, up);
 }
 
+glm::dmat4 viewAlong(const LightViews& views, const glm::dvec3& axis) {
+  return view(views, axis, std::abs(axis.y) < 0.99 ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(1.0, 0.0, 0.0));
+}
+
 }  // namespace
 
 glm::mat4 LightViews::clipFromPlace(std::size_t view) const {
@@ -60,8 +64,7 @@ LightViews lightViews(const SpotLight& light, const Bounds& scene) {
       light.position, light.intensity, light.direction, std::cos(light.innerAngle), std::cos(light.outerAngle), {}};
   placePlanes(views, scene);
   views.tangent = 1.01 * std::tan(light.outerAngle);  // the cone's rim and its filter lie inside the map
-  const glm::dvec3 up = std::abs(light.direction.y) < 0.99 ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(1.0, 0.0, 0.0);
-  views.clipFromWorld = {view(views, light.direction, up)};
+  views.clipFromWorld = {viewAlong(views, light.direction)};
   return views;
 }
 
@@ -93,8 +96,7 @@ LightViews viewFromOutside(const PointLight& light, const Bounds& scene) {
   views.tangent = 1.02 * radius / std::sqrt((distance - radius) * (distance + radius));
   views.near = 0.98 * (distance - radius);
   views.far = 1.01 * (distance + radius);
-  const glm::dvec3 up = std::abs(views.direction.y) < 0.99 ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(1.0, 0.0, 0.0);
-  views.clipFromWorld = {view(views, views.direction, up)};
+  views.clipFromWorld = {viewAlong(views, views.direction)};
   return views;
 }
 

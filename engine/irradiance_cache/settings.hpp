@@ -36,7 +36,7 @@ struct IrradianceCacheSettings {
   /// Largest relative change per frame of the shown irradiance while the camera moves or paths are added; 0: no limit.
   float mostChange = 0.0025f;
   int reflections = 4;  ///< rays per pixel of a coat, a mirror or glass, that find what it reflects; 0: none
-  bool fullFloat = false;  ///< 32 bits instead of 16, for tests
+  bool fullFloat = false;  ///< 32 bits instead of 16; also where lamps differ too much in strength for 16
 };
 
 }  // namespace lucerna

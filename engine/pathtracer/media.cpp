@@ -249,9 +249,10 @@ PackedBoundaries rankBoundaries(const Scene& scene, bool diffuseOnly) {
   for (const Mesh& mesh : scene.meshes) {
     const Material& material = scene.materials[static_cast<std::size_t>(mesh.material)];
     if (!bounds(material)) continue;
+    std::vector<BoundaryTriangle>& triangles = shellOf(material)->triangles;
     const auto corner = [&](std::uint32_t i) { return scene.vertices[scene.indices[i]].position; };
     for (std::uint32_t i = mesh.firstIndex; i + 2 < mesh.firstIndex + mesh.indexCount; i += 3)
-      shellOf(material)->triangles.push_back({corner(i), corner(i + 1), corner(i + 2), 0});
+      triangles.push_back({corner(i), corner(i + 1), corner(i + 2), 0});
   }
   orderByNesting(shells, scene.name);
 

@@ -86,7 +86,7 @@ glm::vec3 meanCoatReflectance(const glm::vec3& specular, float alpha) {
 bool hasCoat(const Material& material) {
   if (material.bsdf == Bsdf::conductor) return material.roughness > 0.0f;
   if (material.bsdf != Bsdf::diffuse) return false;
-  return material.metalMap && material.metalMap->roughness >= 0.0f ? true : material.specular != glm::vec3(0.0f);
+  return material.specular != glm::vec3(0.0f) || (material.metalMap && material.metalMap->roughness >= 0.0f);
 }
 
 glm::vec3 wholeReflectance(const Material& material) {

@@ -1,5 +1,5 @@
 // Reads models through Assimp. Lines and points are dropped, and the stand-in that it draws of a skeleton without
-// meshes. Where asked for triangles, missing normals are made by it, smooth across edges up to kCreaseAngle.
+// meshes.
 #include "scene/model_import.hpp"
 
 #include "base/error.hpp"
@@ -10,7 +10,6 @@
 #include <assimp/config.h>
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/MemoryIOWrapper.h>
-#include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <assimp/Importer.hpp>
 
@@ -23,7 +22,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr float kCreaseAngle = 60.0f;  // degrees between faces
 
 glm::vec3 toGlm(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 glm::vec3 toGlm(const aiColor3D& c) { return {c.r, c.g, c.b}; }
@@ -70,8 +68,8 @@ void checkNodesOf(const aiScene& source, const fs::path& file) {
   }
 }
 
-/// Assimp's post-processing trusts faces blindly. An index out of range is undefined behaviour; a face without vertices
-/// (truncated PLY) aborts the program in Debian's build, as does a mesh marked polygonal that has no polygon.
+/// Assimp's readers trust faces blindly: of a damaged file they may have no vertices or indices out of range, and a
+/// mesh may be marked as polygons without one.
 void checkFacesOf(const aiScene& source, const fs::path& file) {
   for (unsigned m = 0; m < source.mNumMeshes; ++m) {
     aiMesh& mesh = *source.mMeshes[m];
@@ -94,18 +92,15 @@ void checkFacesOf(const aiScene& source, const fs::path& file) {
 
 }  // namespace
 
-ImportedModel::ImportedModel(const fs::path& file, std::span<const std::uint8_t> content, Faces faces)
+ImportedModel::ImportedModel(const fs::path& file, std::span<const std::uint8_t> content)
     : file_(file), importer_(std::make_unique<Assimp::Importer>()) {
   importer_->SetIOHandler(new ModelFiles(file.string(), content));  // all file access goes through it
   importer_->SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
-  importer_->SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, kCreaseAngle);
   try {
     const ImportGuard guard(file);
     scene_ = importer_->ReadFile(file.string(), 0);
     if (scene_) checkNodesOf(*scene_, file);
     if (scene_) checkFacesOf(*scene_, file);
-    if (scene_ && faces == Faces::triangles)
-      scene_ = importer_->ApplyPostProcessing(aiProcess_Triangulate | aiProcess_GenSmoothNormals);
   } catch (const Error&) { throw; } catch (const std::exception& e) {
     throwBadInput("{}: cannot be read as a model: {}", file.string(), e.what());
   }

@@ -18,13 +18,8 @@ namespace lucerna {
 
 class ImportedModel {
  public:
-  enum class Faces {
-    triangles,
-    asTheyAre
-  };  ///< with normals where they are missing; polygons, and what normals there are
   /// `content`: of the file. Throws Error(badInput) naming the file if it cannot be read as a model.
-  ImportedModel(const std::filesystem::path& file, std::span<const std::uint8_t> content,
-                Faces faces = Faces::triangles);
+  ImportedModel(const std::filesystem::path& file, std::span<const std::uint8_t> content);
   ~ImportedModel();
   ImportedModel(const ImportedModel&) = delete;
   ImportedModel& operator=(const ImportedModel&) = delete;

@@ -101,7 +101,7 @@ void warnOfPrecision(const Scene& scene) {
 /// Formats without a reader of their own. Vertex colours are the colour of what has no material.
 ModelViews readOther(Scene& scene, std::span<const std::uint8_t> content) {
   if (lowerExtension(scene.file) == ".off") checkOff(scene.file, content);
-  const ImportedModel model(scene.file, content, ImportedModel::Faces::asTheyAre);
+  const ImportedModel model(scene.file, content);
   TextureLoader textures(scene, model.embedded());
   std::map<std::pair<unsigned, bool>, int> materialOf;  // those in use
   std::vector<PolygonMesh> meshes;
