@@ -129,6 +129,25 @@ TEST_F(ReflectionsTest, AWallShowsTheBoxAsThePathTracerDoes) {
   }
 }
 
+// What the mirror shows of walls under a sky alone is the records' light, in the middle of the picture.
+TEST_F(ReflectionsTest, AMirrorShowsTheRecords) {
+  Scene scene = boxWithMirror(coated(glm::vec3(0.0f), glm::vec3(0.3f), 0.0f, Bsdf::conductor));
+  scene.sun.reset();
+  scene.environment.emplace().radiance = glm::vec3(0.4f);
+  const RenderSettings s = settings();
+  PathTracer::Settings path = sized(32);
+  path.pixelCentres = true;
+  const Image image = drawn(scene, openBoxCamera(), s), expected = tracer(scene, openBoxCamera(), path, 1024).mean();
+  double sum = 0.0, all = 0.0;
+  for (int y = 12; y < 20; ++y)
+    for (int x = 12; x < 20; ++x) {
+      sum += static_cast<double>(image.at(x, y).y);
+      all += static_cast<double>(expected.at(x, y).y);
+    }
+  EXPECT_GT(all, 0.0);
+  EXPECT_NEAR(sum / all, 1.0, 0.05);
+}
+
 TEST_F(ReflectionsTest, AllIsDirectPlusIndirect) {
   Scene scene = boxWithMirror(coated(glm::vec3(0.0f), glm::vec3(0.9f), 0.0f, Bsdf::mirror));
   scene.environment.emplace().radiance = glm::vec3(0.4f);
