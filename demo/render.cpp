@@ -40,6 +40,7 @@ int inspect(const RenderOptions& options) {
   if (path.seconds || path.error || !path.samples.empty() || !path.part.empty() || !path.checkpoint.empty())
     throwBadInput("--inspect {}: with path tracing accepts --spp, --bounces and --seed", options.inspected);
   RenderSettings settings = options.picture.parse();
+  settings.pixelSamples = 1;  // what lit its centre
   settings.fullFloatTarget = true;
   if (settings.of<RadiosityView::Settings>().direct == RadiosityView::Direct::automatic)
     settings.of<RadiosityView::Settings>().direct = RadiosityView::Direct::pixels;

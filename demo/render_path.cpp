@@ -111,6 +111,7 @@ PathTracer::Settings tracerSettings(const PictureOptions& picture, const PathOpt
       throwBadInput("--deviation {}: --technique path supports only deviations that begin with path.", deviation);
   PathTracer::Settings settings;
   settings.size = shared.size;
+  settings.filter = shared.filter;
   settings.transport = transportOf(shared.component);
   settings.bounces = path.bounces.value_or(shared.of<PathSettings>().scatterings);
   settings.seed = path.seed.value_or(shared.of<PathSettings>().seed);

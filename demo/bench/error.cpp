@@ -80,6 +80,9 @@ std::string benchCommand(const ErrorBenchOptions& options) {
   words.insert(words.end(), {"--budget", fmt::format("{:g}", options.budget)});
   if (options.referenceSamples > 0)
     words.insert(words.end(), {"--reference-spp", std::to_string(options.referenceSamples)});
+  if (options.pixelSamples != PictureOptions::kPixelSamples)
+    words.insert(words.end(), {"--pixel-samples", std::to_string(options.pixelSamples)});
+  if (options.filter != "box") words.insert(words.end(), {"--filter", options.filter});
   if (options.small) words.emplace_back("--small");
   if (options.deviations) words.emplace_back("--deviations");
   if (options.bounds) words.emplace_back("--bounds");
@@ -90,6 +93,9 @@ std::string benchCommand(const ErrorBenchOptions& options) {
 std::string pictureCommand(const ErrorBenchOptions& options) {
   std::vector<std::string> words{"lucerna", "render", options.scene, "--size", options.size};
   if (!options.camera.empty()) words.insert(words.end(), {"--camera", options.camera});
+  if (options.pixelSamples != PictureOptions::kPixelSamples)
+    words.insert(words.end(), {"--pixel-samples", std::to_string(options.pixelSamples)});
+  if (options.filter != "box") words.insert(words.end(), {"--filter", options.filter});
   return shellCommand(words);
 }
 
@@ -104,17 +110,25 @@ Scene withoutHighlights(Scene scene) {
 void ErrorBenchOptions::declareView(Command app) {
   app.addOption("--camera", camera, "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");
   app.addOption("--size", size, "WIDTHxHEIGHT of the pictures").showDefault();
+  addCompletions(app.addOption("--filter", filter,
+                               "pixel filter of references and pictures: box, gaussian, blackman-harris, or centre, "
+                               "through pixels' centres")
+                     .showDefault(),
+                 {"box", "gaussian", "blackman-harris", "centre"});
   app.addOption("--references", references,
                 "folder of cached references (default: LUCERNA_REFERENCES, or lucerna in the user's cache)");
   addCompletions(app.addOption("--techniques", techniques,
                                "only these of direct, rsm, lpv, irradiance-cache, radiosity, path; default: all")
                      .delimiter(','),
                  {"direct", "rsm", "lpv", "irradiance-cache", "radiosity", "path"});
+  app.addOption("--pixel-samples", pixelSamples, "points of each pixel that techniques draw")
+      .showDefault()
+      .range(1, 1024);
   app.addFlag("--small", small, "leave out the most expensive points");
   app.addFlag(
       "--bounds", bounds,
       "how much of the error of propagate and gather is the map's, and how much the cells'; without --techniques "
-      "there are no sweeps");
+      "there are no sweeps; through pixels' centres");
   app.addOption("--point", points,
                 "\"TECHNIQUE [SETTING=VALUE]...\": a picture with these settings besides the sweeps; without "
                 "--techniques there are no sweeps");
@@ -137,6 +151,9 @@ ErrorBenchPlan::ErrorBenchPlan(const Scene& original, const ErrorBenchOptions& o
       size(parseSize(options.size)),
       techniques(chosenTechniques(options)),
       leftOut(leftOutOf(options, scene)) {
+  // The parts that bounds replace are known at pixels' centres.
+  filter = options.bounds ? PixelFilter::centre : parseName<PixelFilter>(options.filter, "--filter");
+  pixelSamples = filter == PixelFilter::centre ? 1 : options.pixelSamples;
   points = pointsOf(options, techniques, scene.bounds);
   if (!leftOut.empty())
     std::erase_if(
@@ -157,6 +174,7 @@ ReferenceRequest ErrorBenchPlan::references(const gl::Context& context, gl::Prog
           scene,
           camera,
           size,
+          filter,
           (withPath ? 0.7 : 1.0) * options.budget,
           models,
           options.referenceSamples,
@@ -220,6 +238,8 @@ std::unique_ptr<ErrorBenchResult> runErrorBench(const gl::Context& context, gl::
                          scene,
                          plan.camera,
                          plan.size,
+                         plan.filter,
+                         plan.pixelSamples,
                          result->references,
                          folder,
                          0.3 * options.budget,

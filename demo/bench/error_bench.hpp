@@ -16,7 +16,8 @@ struct ErrorBenchOptions {
   std::vector<std::string> points;  ///< pictures besides, as parseSweepPoint() takes them
   double budget = 120.0;  ///< seconds for references and path tracing together
   std::uint64_t referenceSamples = 0;  ///< 0: by time
-  int frames = 5;
+  int frames = 5, pixelSamples = PictureOptions::kPixelSamples;
+  std::string filter = "box";  ///< of references and pictures
   bool deviations = false, small = false, bounds = false, quiet = false;
   PartOptions part;  ///< of rows; only for the command itself
 
@@ -36,6 +37,8 @@ struct ErrorBenchPlan {
   Scene scene;  ///< without highlights
   Camera camera;
   glm::ivec2 size;
+  PixelFilter filter;
+  int pixelSamples;
   std::vector<std::string> techniques, leftOut;
   std::vector<SweepPoint> points;
   std::vector<TechniqueModel> models;

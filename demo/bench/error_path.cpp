@@ -84,7 +84,7 @@ PathTracer::Settings settingsOf(const ErrorBench& bench, const PathSeries& serie
   settings.size = bench.size;
   settings.diffuseOnly = !bench.references.own;  // like the reference
   settings.deviations = series.switches;
-  settings.pixelCentres = true;
+  settings.filter = bench.filter;
   settings.seed = seedOf(seed);
   return settings;
 }

@@ -39,9 +39,9 @@ ErrorRow measurePublished(const ErrorBench& bench, const SweepPoint& asked) {
   settings.view = given.hemicubes.resolution;
 
   const CoarseScene model = coarserScene(bench.scene, given.patches, asked.mostPatches);
-  const ErrorBench own{bench.context, bench.programs,   model.scene,         bench.camera,
-                       bench.size,    bench.references, bench.folder,        bench.pathSeconds,
-                       bench.frames,  bench.command,    bench.pictureCommand};
+  const ErrorBench own{bench.context, bench.programs,     model.scene,         bench.camera, bench.size,
+                       bench.filter,  bench.pixelSamples, bench.references,    bench.folder, bench.pathSeconds,
+                       bench.frames,  bench.command,      bench.pictureCommand};
   const auto start = Clock::now();
   PublishedScene published =
       solveAsPublished(bench.context, bench.programs, model.scene, settings, [](double) { return !interrupted(); });

@@ -48,6 +48,9 @@ RenderSettings settingsOf(const ErrorBench& bench, const PictureOptions& picture
   RenderSettings settings = picture.parse();
   settings.component = component;
   settings.size = bench.size;
+  settings.filter = bench.filter;
+  if (settings.pixelSamples == PictureOptions::kPixelSamples)  // a point may ask for its own
+    settings.pixelSamples = bench.pixelSamples;
   settings.fullFloatTarget = true;
   settings.textures.anisotropy = 1.0f;  // anisotropic filtering differs between drivers
   settings.reuse = false;  // measure a picture's full cost, without savings in a still scene

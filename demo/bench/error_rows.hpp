@@ -19,6 +19,8 @@ struct ErrorBench {
   const Scene& scene;
   const Camera& camera;
   glm::ivec2 size;
+  PixelFilter filter;
+  int pixelSamples;  ///< of the techniques; path has its own
   const References& references;
   std::filesystem::path folder;  ///< for pictures and rows
   double pathSeconds;  ///< maximum time for a point of the path tracer's sweep

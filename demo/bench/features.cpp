@@ -129,7 +129,8 @@ struct FeaturesOptions {
 int runFeatures(FeaturesOptions options) {
   options.common.apply();
   options.picture.readSettingsFile();
-  const RenderSettings settings = options.picture.parse();
+  options.picture.usualSamples = 1;
+  RenderSettings settings = options.picture.parse();
   if (options.scenes.empty()) options.scenes = {bench::sceneOrAtrium("")};
   const auto host = options.common.makeHost(false);
   const gl::Context context;

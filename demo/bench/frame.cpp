@@ -68,6 +68,7 @@ Image combined(const Image& a, const Image& b, const std::function<glm::vec3(std
 RenderSettings settingsOf(const SweepPoint& asked, glm::ivec2 size) {
   RenderSettings settings = asked.picture.parse();
   settings.size = size;
+  settings.pixelSamples = 1;
   settings.fullFloatTarget = true;
   settings.textures.anisotropy = 1.0f;  // differs between drivers
   settings.reuse = false;
@@ -278,7 +279,7 @@ int runFrame(FrameOptions options) {
   const gl::Context context;
   gl::ProgramLibrary programs;
   watchForInterrupt();
-  PathSampler sampler(context, programs, scene, camera, size, Transport::all);
+  PathSampler sampler(context, programs, scene, camera, size, PixelFilter::centre, Transport::all);
   measure::SamplingGoal goal;
   goal.seconds = options.budget;
   goal.samples = options.referenceSamples;
@@ -293,9 +294,10 @@ int runFrame(FrameOptions options) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throwBadInput("-o {}: cannot create folder {} ({})", options.output, folder.string(), error.message());
-  const FrameBench bench{context, programs,      scene,
-                         camera,  *reference,    seenLights(context, programs, scene, camera, size),
-                         folder,  options.frames};
+  const FrameBench bench{context,    programs,
+                         scene,      camera,
+                         *reference, seenLights(context, programs, scene, camera, size, PixelFilter::centre),
+                         folder,     options.frames};
   FramePage page{scene.name,
                  fmt::format("camera {}, {}x{}", camera.name.empty() ? "default" : camera.name, size.x, size.y),
                  commandOf(options),

@@ -54,11 +54,9 @@ std::set<LightPaths> wantedOf(const std::vector<TechniqueModel>& models, LightKi
   return wanted;
 }
 
-/// Shares of the time; direct light of sun and lamps alone has almost no noise through pixel centres.
-double weightOf(const LightPaths& paths, LightKinds scene) {
-  if (paths.transport == Transport::indirect) return 1.0;
-  if (paths.transport != Transport::direct) return 2.0;
-  return paths.lights != scene && paths.lights == (scene & kDeltaLights) ? 0.2 : 1.0;
+/// Shares of the time.
+double weightOf(const LightPaths& paths) {
+  return paths.transport == Transport::indirect || paths.transport == Transport::direct ? 1.0 : 2.0;
 }
 
 /// Half of the time for the reference that judges every row, the rest by weight.
@@ -83,9 +81,9 @@ std::vector<Share> sharesOf(const ReferenceRequest& request) {
   others.erase(all);
   others.erase({Transport::indirect, lights});  // computed as a difference of two others
   double weights = 0.0;
-  for (const LightPaths& paths : others) weights += weightOf(paths, lights);
+  for (const LightPaths& paths : others) weights += weightOf(paths);
   for (const LightPaths& paths : others)
-    shares.push_back({paths, false, (own ? 0.35 : 0.5) * weightOf(paths, lights) / weights});
+    shares.push_back({paths, false, (own ? 0.35 : 0.5) * weightOf(paths) / weights});
   return shares;
 }
 
@@ -101,8 +99,8 @@ struct ShareSampler {
                       ? std::nullopt
                       : std::optional(measure::litBy(request.scene, share.paths.lights))),
         scene(lessLight ? *lessLight : request.scene),
-        sampler(request.context, request.programs, scene, request.camera, request.size, share.paths.transport,
-                share.allMaterials, share.paths.bounces),
+        sampler(request.context, request.programs, scene, request.camera, request.size, request.filter,
+                share.paths.transport, share.allMaterials, share.paths.bounces),
         key(measure::keyOf(scene, request.camera, request.size, share.paths.transport, sampler.version())) {}
   ShareSampler(const ShareSampler&) = delete;
   ShareSampler& operator=(const ShareSampler&) = delete;
@@ -221,6 +219,10 @@ JudgedPicture References::judge(const Image& original, const Reference& referenc
   judged.nrmseError = whole.squares / (2.0 * judged.pixels.rmse * judged.pixels.measured.referenceMean);
   judged.relmseError = whole.relative;
   picture = less(picture, black), exact = less(exact, black);
+  // What an emissive surface covers there is so much brighter that the rest cannot be told from the sampling of its
+  // edge.
+  for (std::size_t i = 0; i < emitterEdges.size(); ++i)
+    if (emitterEdges[i]) picture.pixels[i] = exact.pixels[i] = error.pixels[i] = glm::vec3(0.0f);
   const int side = measure::blockSide(exact.width);
   judged.scattered = errors(picture, exact, error);
   judged.l2Error = measure::squareErrorsOf(picture, exact, error).squares * judged.scattered.l2 /
@@ -258,8 +260,8 @@ std::optional<References> obtainReferences(const ReferenceRequest& request) {
     if (!reference || interrupted()) return std::nullopt;
     if (!isOwn && !request.own.empty()) measure::ReferenceCache(request.own).store(key, *reference);
     if (!result.seen.contains(paths.lights))
-      result.seen.emplace(paths.lights,
-                          seenLights(request.context, request.programs, sampler.scene, request.camera, request.size));
+      result.seen.emplace(paths.lights, seenLights(request.context, request.programs, sampler.scene, request.camera,
+                                                   request.size, request.filter));
     if (allMaterials) result.own = std::move(*reference);
     else result.of.emplace(paths, std::move(*reference));
     progress.update(++done);
@@ -269,7 +271,11 @@ std::optional<References> obtainReferences(const ReferenceRequest& request) {
   if (wantedOf(request.models, result.lights).contains(indirect)) result.of.emplace(indirect, result.indirect_);
 
   // Surfaces, and whether sun and lamps light them. Without such lights none is lit.
-  result.albedo = albedoPicture(request.context, request.programs, request.scene, request.camera, request.size);
+  result.albedo =
+      albedoPicture(request.context, request.programs, request.scene, request.camera, request.size, request.filter);
+  if (result.lights.surfaces)
+    result.emitterEdges =
+        emitterEdges(request.context, request.programs, request.scene, request.camera, request.size, request.filter);
   const auto directly = result.of.find(delta);
   for (std::size_t i = 0; i < result.albedo.pixels.size(); ++i) {
     const auto positive = [](const glm::vec3& v) { return v.x > 0.0f || v.y > 0.0f || v.z > 0.0f; };

@@ -26,6 +26,7 @@ struct ReferenceRequest {
   const Scene& scene;
   const Camera& camera;
   glm::ivec2 size;
+  PixelFilter filter;
   double seconds;  ///< for all of them together
   std::vector<TechniqueModel> models;  ///< of the points
   std::uint64_t samples = 0;  ///< per pixel; 0: by time
@@ -76,6 +77,7 @@ struct References {
   Image albedo;  ///< of visible surfaces; 0 in the background
   /// Visible lights and background of the scene lit by these kinds alone.
   std::map<measure::LightKinds, Image> seen;
+  std::vector<bool> emitterEdges;  ///< pixels that an emissive surface covers in part: no light is judged there
   std::vector<bool> lit, other;  ///< surface pixels with direct light of sun and lamps, and without
 };
 

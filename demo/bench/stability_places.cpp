@@ -110,7 +110,7 @@ Image picture(const StabilityContext& c, const Scene& scene, How how, Component 
     PathTracer::Settings settings;
     settings.size = kPlacesSize;
     settings.transport = component == Component::direct ? Transport::direct : Transport::all;
-    settings.pixelCentres = true;
+    settings.filter = PixelFilter::centre;
     PathTracer tracer(c.context, c.programs, scene, settings);
     tracer.setCamera(scene.cameras.front());
     tracer.record(64);

@@ -228,6 +228,7 @@ RenderSettings Asked::parse(glm::ivec2 size, const std::vector<std::string>& mor
   options.settings.insert(options.settings.end(), more.begin(), more.end());
   options.size = fmt::format("{}x{}", size.x, size.y);
   RenderSettings result = options.parse();
+  result.pixelSamples = 1;
   result.fullFloatTarget = true;
   result.textures.anisotropy = 1.0f;  // how textures are filtered anisotropically is each driver's own
   if (result.of<RadiosityView::Settings>().direct == RadiosityView::Direct::automatic)

@@ -44,9 +44,14 @@ struct CommonOptions {
 
 /// --technique, --component, --fidelity, --deviation, --set, --size: the options of a picture.
 struct PictureOptions {
+  static constexpr int kPixelSamples = 16;
+  int usualSamples = kPixelSamples;  ///< of a pixel, without --pixel-samples; commands that time frames set 1
+
   /// technique: empty until readSettingsFile(), unless it is given.
   std::string technique, component = "all", fidelity = "corrected", size = "1280x720";
   std::vector<std::string> deviations, settings;
+  std::optional<int> pixelSamples;  ///< --pixel-samples and --filter: settings of their own
+  std::string filter;
   std::string settingsFile;  ///< --settings: its content counts as given before the command line
 
   void declare(Command app);

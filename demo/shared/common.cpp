@@ -91,6 +91,11 @@ void PictureOptions::declare(Command app) {
                 "WIDTHxHEIGHT in pixels; path without it: 1920x1080 for the JSON of the VPT original and for "
                 "--fidelity original")
       .showDefault();
+  app.addOption("--pixel-samples", pixelSamples,
+                "points of each pixel that are drawn, for smooth edges (16); path: its own --spp")
+      .range(1, 1024);
+  addNames(app.addOption("--filter", filter, "pixel filter: box, gaussian, blackman-harris, or centre: none (box)"),
+           namesOf(PixelFilter{}));
   addCompletions(app.addOption("--set", settings, "KEY=VALUE, see below; may be repeated"), settingCompletions());
   app.addOption("--settings", settingsFile,
                 "a settings file, as written by `lucerna tune`; other options here override it");
@@ -99,6 +104,8 @@ void PictureOptions::declare(Command app) {
 
 void PictureOptions::readSettingsFile() {
   if (!settingsFile.empty()) addSettingsFile();
+  if (pixelSamples) settings.push_back(fmt::format("picture.samples={}", *pixelSamples));
+  if (!filter.empty()) settings.push_back("picture.filter=" + filter);
   if (technique.empty()) technique = impliedTechnique();
   if (settingsSpp && technique != "path")
     throwBadInput("--settings {}: key \"spp\": samples per pixel belong to technique path, not to {}", settingsFile,
@@ -138,6 +145,7 @@ nlohmann::ordered_json PictureOptions::toJson() const {
 
 RenderSettings PictureOptions::parse() const {
   RenderSettings result;
+  result.pixelSamples = usualSamples;
   result.technique = techniqueNamed(technique.empty() ? impliedTechnique() : technique, "--technique").name;
   result.component = parseName<Component>(component, "--component");
   applyFidelity(result, parseName<Fidelity>(fidelity, "--fidelity"));

@@ -33,7 +33,7 @@ gl::Texture textureOf(const std::string& name, const Image& image) {
 // The settings are those of engine/pathtracer/path_sampler.cpp, so that both give the same picture; another seed makes
 // it independent of the cached samples.
 LiveReference::LiveReference(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
-                             glm::ivec2 size, Component component)
+                             glm::ivec2 size, PixelFilter filter, Component component)
     : context_(context),
       scene_(scene),
       size_(size),
@@ -43,7 +43,7 @@ LiveReference::LiveReference(const gl::Context& context, gl::ProgramLibrary& pro
   settings.size = size;
   settings.transport = transportOf(component);
   settings.diffuseOnly = true;
-  settings.pixelCentres = true;
+  settings.filter = filter;
   settings.submissionSeconds = 0.02;
   Hash seed;
   seed.add(std::string_view("live"));
@@ -56,10 +56,13 @@ LiveReference::LiveReference(const gl::Context& context, gl::ProgramLibrary& pro
 
 LiveReference::~LiveReference() = default;
 
+PixelFilter LiveReference::filter() const { return tracer_->settings().filter; }
+
 void LiveReference::look(const Camera& camera) {
   keep();
   tracer_->setCamera(camera);
-  key_ = measure::keyOf(scene_, camera, size_, transportOf(component_), PathSampler::kVersion);
+  key_ = measure::keyOf(scene_, camera, size_, transportOf(component_),
+                        PathSampler::versionOf(tracer_->settings().filter));
   cached_ = cache_.load(*key_);
   cachedSamples_ = cached_ ? cached_->samples : 0;
   shownSamples_ = keptSamples_ = 0;

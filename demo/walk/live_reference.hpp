@@ -23,11 +23,12 @@ class LiveReference {
  public:
   /// Compiles, and builds the scene's hierarchy; `scene` must outlive it.
   LiveReference(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, glm::ivec2 size,
-                Component component);
+                PixelFilter filter, Component component);
   ~LiveReference();
 
   glm::ivec2 size() const { return size_; }
   Component component() const { return component_; }
+  PixelFilter filter() const;
   /// Switches to another view: stores the samples in the cache if worthwhile, and restarts sampling.
   void look(const Camera& camera);
   /// Spends about `seconds`: after the first submission, none is started that would probably exceed the remaining time.

@@ -39,12 +39,13 @@ bool ReferenceWork::seek(const Frame& frame) {
   const glm::ivec2 size = shown.renderer->size();
   const Component component = shown.renderer->settings().component;
   if (!state_.reference || state_.reference->size() != size || state_.reference->component() != component ||
-      version_ != state_.sceneVersion) {
+      state_.reference->filter() != shown.renderer->settings().filter || version_ != state_.sceneVersion) {
     try {
       frame.note("making the path tracer");
       const gl::BuildWatch watch([&](const std::string& name) { frame.note("compiling " + name); });
       state_.reference.reset();
-      state_.reference = std::make_unique<LiveReference>(context_, programs_, *state_.scene, size, component);
+      state_.reference = std::make_unique<LiveReference>(context_, programs_, *state_.scene, size,
+                                                         shown.renderer->settings().filter, component);
       version_ = state_.sceneVersion;
       camera_.reset();
       made = true;

@@ -111,9 +111,10 @@ int record(const WalkOptions& options, const Host& host, const gl::Context& cont
   const PartFolder part = framesOf(options, scene, renderer, cameras);
 
   watchForInterrupt();
-  renderer.render(path.view(first));  // warm-up: drivers finish shaders on first use; its times are dropped
+  renderer.renderSamples(path.view(first),
+                         path.view(first));  // warm-up: drivers finish shaders on first use; its times are dropped
   constexpr int kFramesAtRest = 64;  // flicker of a walk from where one has stood, not of a cut's first frames
-  for (int i = 0; options.flicker && i < kFramesAtRest; ++i) renderer.render(path.view(first));
+  for (int i = 0; options.flicker && i < kFramesAtRest; ++i) renderer.renderSamples(path.view(first), path.view(first));
   Progress progress("walk", static_cast<int>(part.last() - part.first()), options.common.quiet);
   std::vector<double> frameSeconds;
   std::optional<int> before;
@@ -127,7 +128,7 @@ int record(const WalkOptions& options, const Host& host, const gl::Context& cont
     } else {
       const auto start = Clock::now();
       if (pathOf(renderer.technique())) renderer.renderToTheEnd(cameras[i]);  // all samples: one alone is mere noise
-      else renderer.render(cameras[i]);
+      else renderer.renderSamples(cameras[i], cameras[i]);
       gl::finish();
       frameSeconds.push_back(secondsSince(start));
       writePng(part.folder() ? part.file(i, ".png") : file, renderer.readDisplay());
@@ -137,7 +138,7 @@ int record(const WalkOptions& options, const Host& host, const gl::Context& cont
     if (options.flicker && before) {
       // The same view, once with its own volume and once with the previous view's: motion cancels, flicker remains.
       const Image now = renderer.readRadiance();
-      renderer.render(cameras[i], path.view(*before));
+      renderer.renderSamples(cameras[i], path.view(*before));
       const measure::Change change = measure::changeBetween(renderer.readRadiance(), now);
       largest = {std::max(largest.mean, change.mean), std::max(largest.block, change.block)};
       changes.push_back({{"view", views[i]}, {"mean", change.mean}, {"block", change.block}});
@@ -215,6 +216,7 @@ int runWalk(WalkOptions options) {
   }
   options.common.apply();
   options.picture.readSettingsFile();
+  if (options.records()) options.picture.usualSamples = 1;  // frames are timed
   const RenderSettings settings = options.picture.parse();
   if (options.scene.empty()) options.scene = (dataFolder() / "assets/atrium/atrium.json").string();
   if (!options.record.empty() && fs::exists(options.record) && !fs::is_directory(options.record))

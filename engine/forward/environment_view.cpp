@@ -27,7 +27,7 @@ EnvironmentView::EnvironmentView(gl::ProgramLibrary& programs, const Scene& scen
 }
 
 void EnvironmentView::record(const gl::Framebuffer& target, const gl::VertexArray& noAttributes, const Camera& camera,
-                             glm::ivec2 size) const {
+                             glm::ivec2 size, const glm::dvec2& offset) const {
   gl::RasterState state;
   state.depth = gl::Depth::equalReadOnly;
   const gl::RasterPass pass("environment", target, state);
@@ -36,10 +36,12 @@ void EnvironmentView::record(const gl::Framebuffer& target, const gl::VertexArra
   if (picture_) {
     // All rays of an orthographic view see one point of the environment.
     const double high = camera.isOrthographic() ? 0.0 : camera.halfHeight(), wide = high * size.x / size.y;
-    const glm::dvec3 right = glm::normalize(glm::cross(camera.direction, camera.up));
-    program_->set("viewForward", glm::vec3(camera.direction));
-    program_->set("viewRight", glm::vec3(wide * right));
-    program_->set("viewUp", glm::vec3(high * glm::cross(right, camera.direction)));
+    const glm::dvec3 right = wide * glm::normalize(glm::cross(camera.direction, camera.up)),
+                     up = high * glm::cross(glm::normalize(glm::cross(camera.direction, camera.up)), camera.direction);
+    const glm::dvec2 moved = 2.0 * offset / glm::dvec2(size);
+    program_->set("viewForward", glm::vec3(camera.direction + moved.x * right + moved.y * up));
+    program_->set("viewRight", glm::vec3(right));
+    program_->set("viewUp", glm::vec3(up));
     program_->set("environmentTurn", turn_);
     picture_->bind(kPictureUnit);
   }

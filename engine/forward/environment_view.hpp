@@ -19,9 +19,10 @@ class EnvironmentView {
 
   static bool isNeeded(const SceneFeatures& features) { return features.environment; }
 
-  /// `target` has the given size; its depth has been drawn with the same camera.
-  void record(const gl::Framebuffer& target, const gl::VertexArray& noAttributes, const Camera& camera,
-              glm::ivec2 size) const;
+  /// `target` has the given size; its depth has been drawn with the same camera. `offset`: of what pixels show from
+  /// their centres, in pixels.
+  void record(const gl::Framebuffer& target, const gl::VertexArray& noAttributes, const Camera& camera, glm::ivec2 size,
+              const glm::dvec2& offset) const;
   std::size_t gpuBytes() const { return picture_ ? picture_->bytes() : 0; }
 
  private:

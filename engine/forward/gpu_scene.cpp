@@ -51,6 +51,8 @@ GpuScene::GpuScene(const Scene& scene, const SceneFeatures& features, const gl::
     : scene_(&scene), features_(features), isSoftware_(capabilities.softwareRenderer) {
   gl::Sampling sampling{settings.mipmaps ? gl::Filter::linearMipmaps : gl::Filter::linear, gl::Filter::linear,
                         gl::Wrap::repeat};
+  // Each of n samples covers 1 / sqrt(n) of a pixel's width.
+  sampling.bias = -0.5f * std::log2(static_cast<float>(settings.pixelSamples));
   // Without mipmaps a software renderer reads every texel below a pixel, thousands where the picture is small.
   const bool anisotropic = capabilities.anisotropicFilter && settings.mipmaps;
   if (anisotropic && settings.anisotropy > 1.0f && features.diffuseTextures) isotropic_.emplace("isotropic", sampling);

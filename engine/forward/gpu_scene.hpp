@@ -14,6 +14,7 @@ namespace lucerna {
 
 struct GpuSceneSettings {
   float anisotropy = 4.0f;  ///< maximum; 1 without the extension
+  int pixelSamples = 1;  ///< over which a pixel is averaged: textures need not average over the whole pixel
   bool mipmaps = true;
   bool boundaries = true;  ///< draw meshes of Bsdf::none, which light passes straight through, like any other
 };

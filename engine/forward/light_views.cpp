@@ -60,8 +60,13 @@ double LightViews::largestSolidAngle(int size) const {
 }
 
 LightViews lightViews(const SpotLight& light, const Bounds& scene) {
-  LightViews views{
-      light.position, light.intensity, light.direction, std::cos(light.innerAngle), std::cos(light.outerAngle), {}};
+  LightViews views{light.position,
+                   light.intensity,
+                   light.radius,
+                   light.direction,
+                   std::cos(light.innerAngle),
+                   std::cos(light.outerAngle),
+                   {}};
   placePlanes(views, scene);
   views.tangent = 1.01 * std::tan(light.outerAngle);  // the cone's rim and its filter lie inside the map
   views.clipFromWorld = {viewAlong(views, light.direction)};
@@ -72,6 +77,7 @@ LightViews lightViews(const PointLight& light, const Bounds& scene) {
   LightViews views;
   views.position = light.position;
   views.intensity = light.intensity;
+  views.radius = light.radius;
   views.isPoint = true;
   placePlanes(views, scene);
   for (const Face& face : kFaces) views.clipFromWorld.push_back(view(views, face.axis, face.up));
@@ -89,6 +95,7 @@ LightViews viewFromOutside(const PointLight& light, const Bounds& scene) {
   LightViews views;
   views.position = light.position;
   views.intensity = light.intensity;
+  views.radius = light.radius;
   views.isPoint = true;
   const glm::dvec3 towards = scene.centre() - light.position;
   const double distance = glm::length(towards), radius = 0.5 * glm::length(scene.extent());

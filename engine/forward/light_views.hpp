@@ -15,6 +15,7 @@ namespace lucerna {
 struct LightViews {
   glm::dvec3 position{0.0};
   glm::vec3 intensity{0.0f};  ///< W/sr; for a spot, on its axis
+  double radius = 0.0;  ///< of its ball
   glm::dvec3 direction{0.0, 0.0, -1.0};  ///< a spot's axis
   double cosInner = -1.0, cosOuter = -1.0;  ///< of a spot's half angles
   std::vector<glm::dmat4> clipFromWorld;  ///< one or six matrices

@@ -39,7 +39,8 @@ LocalLights::LocalLights(gl::ProgramLibrary& programs, const GpuScene& scene, co
   std::vector<shared::PlainLamp> lamps;
   for (const LightViews& light : plain)
     lamps.push_back({light.place(), static_cast<float>(light.cosInner), glm::vec3(light.direction),
-                     light.omnidirectional() ? -2.0f : static_cast<float>(light.cosOuter), light.intensity, 0.0f});
+                     light.omnidirectional() ? -2.0f : static_cast<float>(light.cosOuter), light.intensity,
+                     static_cast<float>(light.radius)});
   if (!lamps.empty())
     plain_ = gl::Buffer("lamps without shadows", lamps.size() * sizeof lamps[0], lamps.data(), gl::Usage::staticDraw);
   const int spotLayers = static_cast<int>(spotViews_.size()), pointLayers = static_cast<int>(pointViews_.size());

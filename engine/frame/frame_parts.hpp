@@ -9,6 +9,7 @@
 #include "gl/context.hpp"
 #include "gl/program.hpp"
 #include "gl/time_query.hpp"
+#include "rays/shadow_rays.hpp"
 #include "scene/features.hpp"
 
 #include <optional>
@@ -29,6 +30,7 @@ struct FrameParts {
   const std::vector<LightViews>& spots;
   const std::vector<LightViews>& points;
   const std::optional<SunShadow>& sunShadow;
+  TracedScene& traced;  ///< the scene for rays
   const gl::Texture& radiance;  ///< the frame's picture, RGBA, linear, scene units; depth of the same size
   const gl::Texture& depth;
   const gl::Framebuffer& radianceTarget;
@@ -44,6 +46,9 @@ struct FrameView {
   glm::dmat4 clip;  ///< from world
   glm::mat4 clipFromWorld;
   glm::vec3 viewPoint;
+  int sample = 0;  ///< number of the pixel's sample, from 0, to draw other random numbers
+  glm::dvec2 offset{0.0};  ///< of that sample from the pixel's centre, in pixels to the right and up; in `clip` already
+  bool isNew = true;  ///< not drawn before since the camera moved
 
   GpuScene::View drawn() const { return {&clipFromWorld, &viewPoint}; }
 };

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/named_values.hpp"
+#include "base/pixel_filter.hpp"
 #include "forward/gpu_scene.hpp"
 #include "forward/local_lights.hpp"
 #include "forward/sun_shadow.hpp"
@@ -35,14 +36,22 @@ constexpr std::array<std::string_view, 4> namesOf(Fidelity) { return {"corrected
 
 constexpr std::string_view kDefaultTechnique = "irradiance-cache";
 
+/// How direct light of sun and lamps finds what is in its way: shadow maps, or rays (rays/shadow_rays.hpp).
+enum class ShadowTransport { map, rays };
+constexpr std::array<std::string_view, 2> namesOf(ShadowTransport) { return {"map", "rays"}; }
+
 struct RenderSettings {
   std::string_view technique = kDefaultTechnique;  ///< the name of one in render/techniques.hpp
   Component component = Component::all;
   glm::ivec2 size{1280, 720};
+  int pixelSamples = 1;  ///< frames of one view that are added up, each for another point of every pixel
+  PixelFilter filter = PixelFilter::box;  ///< places them
+  bool reprojection = true;  ///< while the view moves, frames before it smooth edges too
   bool reuse = true;  ///< stages with unchanged inputs are not run again; the same picture, bit by bit
   bool fullFloatTarget = false;  ///< HDR target in 32 instead of 16 bits, for measured pictures
   std::optional<float> exposure;  ///< multiplies radiance before tone mapping; not set: the scene's
   GpuSceneSettings textures;
+  ShadowTransport shadows = ShadowTransport::map;
   SunShadow::Settings shadow;
   LocalLights::Settings lights;
   double unmeasuredIterations =

@@ -165,6 +165,7 @@ void applySampling(const Sampling& s, GLuint to, void(GLAPIENTRY* integer)(GLuin
   parameter(GL_TEXTURE_WRAP_T, raw(s.wrap));
   parameter(GL_TEXTURE_WRAP_R, raw(s.wrap));
   numbers(to, GL_TEXTURE_BORDER_COLOR, &s.border.x);
+  if (s.bias != 0.0f) number(to, GL_TEXTURE_LOD_BIAS, s.bias);
   if (s.anisotropy > 1.0f) number(to, GL_TEXTURE_MAX_ANISOTROPY_EXT, s.anisotropy);
   if (s.depthCompare) {
     parameter(GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);

@@ -108,6 +108,7 @@ struct Sampling {
   Wrap wrap = Wrap::edge;
   glm::vec4 border{0.0f};
   float anisotropy = 1.0f;
+  float bias = 0.0f;  ///< added to the mip level; below 0: sharper
   bool depthCompare = false;  ///< sampler2DShadow, less or equal
 };
 

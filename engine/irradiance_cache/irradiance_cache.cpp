@@ -52,10 +52,11 @@ bool IrradianceCache::isNeeded(const SceneFeatures& features, const IrradianceCa
 }
 
 IrradianceCache::IrradianceCache(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, const Scene& scene,
-                                 const glm::dvec3& origin, const IrradianceCacheSettings& settings, Light light)
+                                 const PathScene& traced, const glm::dvec3& origin,
+                                 const IrradianceCacheSettings& settings, Light light)
     : settings_(settings),
       programs_(&programs),
-      scene_(scene, analyse(scene), capabilities, PathScene::Settings{true, true, {}}),
+      scene_(traced),
       rayOrigin_(scene_.origin() - origin),
       referenceIrradiance_(typicalOf(scene)),
       clearTexture_(capabilities.clearTexture),
@@ -174,7 +175,7 @@ void IrradianceCache::place(const Inputs& inputs) {
   constants.markEvery = static_cast<std::uint32_t>(pixels / (kKeyPixels - constants.prefetch) + 1);
   constants_.upload(0, sizeof constants, &constants);
 
-  setView(path_, inputs.camera, rayOrigin_, size);
+  setView(path_, inputs.camera, rayOrigin_, size, inputs.offset);
   path_.picture = glm::ivec4(size, 0, 0);
   pathConstants_.upload(0, sizeof path_, &path_);
 }
@@ -404,9 +405,9 @@ double IrradianceCache::mostIterations() const {
 }
 
 std::size_t IrradianceCache::gpuBytes() const {
-  std::size_t bytes = scene_.gpuBytes() + cascadeConstants_.bytes() + cascadeConstantsBefore_.bytes() +
-                      constants_.bytes() + pathConstants_.bytes() + lit_.bytes() + slotTable_.bytes() + keys_.bytes() +
-                      seen_.bytes() + irradiance_.bytes() + prefetchPoints_.bytes() + ring_->bytes() +
+  std::size_t bytes = cascadeConstants_.bytes() + cascadeConstantsBefore_.bytes() + constants_.bytes() +
+                      pathConstants_.bytes() + lit_.bytes() + slotTable_.bytes() + keys_.bytes() + seen_.bytes() +
+                      irradiance_.bytes() + prefetchPoints_.bytes() + ring_->bytes() +
                       (gather_ ? gather_->gpuBytes() : 0);
   for (std::size_t i = 0; i < 2; ++i) bytes += records_[i].bytes() + work_[i].bytes();
   return bytes;

@@ -39,6 +39,7 @@ class IrradianceCache {
   struct Inputs {
     std::vector<Cascade> cascades;  ///< of placeCascadesAround
     Camera camera;  ///< of the visible surfaces, in the frame's coordinates
+    glm::dvec2 offset;  ///< of what pixels show from their centres, in pixels
     glm::mat4 worldFromClip;  ///< the same
     const VisibleSurfaces& visible;
     /// For CacheTransport::gather, one per light; the same ones every frame. Read if `mapsAreNew`, and by new records.
@@ -54,9 +55,10 @@ class IrradianceCache {
     std::uint32_t frame = 0;  ///< as frame() counts them
   };
 
-  /// `scene`: as loaded. `origin`: of the frame's positions, in the scene's coordinates.
+  /// `scene`: as loaded; `traced`: the same for rays. `origin`: of the frame's positions, in the scene's coordinates.
   IrradianceCache(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, const Scene& scene,
-                  const glm::dvec3& origin, const IrradianceCacheSettings& settings, Light light);
+                  const PathScene& traced, const glm::dvec3& origin, const IrradianceCacheSettings& settings,
+                  Light light);
 
   static bool isNeeded(const SceneFeatures& features, const IrradianceCacheSettings& settings, Light light);
 
@@ -130,7 +132,7 @@ class IrradianceCache {
 
   IrradianceCacheSettings settings_;
   gl::ProgramLibrary* programs_;
-  PathScene scene_;
+  const PathScene& scene_;
   glm::dvec3 rayOrigin_;  ///< in the frame's coordinates
   float referenceIrradiance_;  ///< of the order of the irradiance; only scales stored values
   bool clearTexture_;

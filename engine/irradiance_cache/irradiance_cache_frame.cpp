@@ -49,8 +49,8 @@ IrradianceCacheFrame::IrradianceCacheFrame(const FrameParts& parts)
     : parts_(parts),
       maps_(lightMaps(parts)),
       visible_(parts.programs, parts.drawn(), parts.depth),
-      cache_(parts.programs, parts.context.capabilities(), parts.scene, parts.origin, cacheSettings(parts),
-             cachedLight(parts.settings.component)) {
+      cache_(parts.programs, parts.context.capabilities(), parts.scene, parts.traced.get(), parts.origin,
+             cacheSettings(parts), cachedLight(parts.settings.component)) {
   if (!Reflections::isNeeded(parts.features, settings().reflections)) return;
   reflections_.emplace(parts.programs, parts.scene, cache_.rayFlags(1, true), settings().reflections,
                        parts.settings.unmeasuredIterations);
@@ -60,23 +60,18 @@ IrradianceCacheFrame::IrradianceCacheFrame(const FrameParts& parts)
 void IrradianceCacheFrame::resize() {
   visible_.resize(parts_.depth);
   if (reflections_) reflections_->resize(visible_.size());
-  clip_ = glm::dmat4(0.0);  // other pixels of the same view see other points
 }
 
 bool IrradianceCacheFrame::record(gl::TimeQuery& timer, const FrameView& view, FrameEffort effort) {
   cache_.collect();
   const Camera& volume = view.volumeCamera;
-  const bool sameView =
-      view.clip == clip_ && volume.position == volumePosition_ && volume.direction == volumeDirection_;
-  if (!sameView) {
-    clip_ = view.clip;
-    volumePosition_ = volume.position;
-    volumeDirection_ = volume.direction;
-    since_ = cache_.frame() + 1;
-  }
+  volumePosition_ = volume.position;
+  volumeDirection_ = volume.direction;
+  if (view.isNew) since_ = cache_.frame() + 1;
   const IrradianceCache::Counts& counts = cache_.counts();
-  settled_ = sameView && counts.frame >= since_ && counts.waiting == 0;
-  if (settled_ && parts_.settings.reuse) return false;
+  settled_ = !view.isNew && counts.frame >= since_ && counts.waiting == 0;
+  const bool reflectsAnew = reflections_ && parts_.settings.pixelSamples > 1;  // another point of each pixel
+  if (settled_ && parts_.settings.reuse && !reflectsAnew) return false;
   const bool mapsAreNew = hasMaps() ? maps_->willBeDrawn() : !parts_.settings.reuse;
   const std::vector<ReflectiveShadowMap::Outputs> none;
   const std::vector<ReflectiveShadowMap::Outputs>& maps = maps_ ? maps_->record(timer) : none;
@@ -88,10 +83,11 @@ bool IrradianceCacheFrame::record(gl::TimeQuery& timer, const FrameView& view, F
   const IrradianceCacheSettings& cache = settings();
   const int rounds = effort.wholePicture ? (cache.samples + cache.rays - 1) / cache.rays : 1;
   const glm::dvec2 size(visible_.size());
-  cache_.update({placeCascadesAround(cache.cascades, parts_.drawn().scene().bounds, volume, size.x / size.y),
-                 view.camera, glm::mat4(glm::inverse(view.clip)), visible_, maps, mapsAreNew, effort.fadesIn},
-                rounds);
-  if (reflections_) reflections_->record([&] { cache_.bindForRays(); });
+  cache_.update(
+      {placeCascadesAround(cache.cascades, parts_.drawn().scene().bounds, volume, size.x / size.y), view.camera,
+       view.offset, glm::mat4(glm::inverse(view.clip)), visible_, maps, mapsAreNew, effort.fadesIn},
+      rounds);
+  if (reflections_) reflections_->record(view.sample, parts_.settings.pixelSamples, [&] { cache_.bindForRays(); });
   return true;
 }
 
@@ -105,7 +101,6 @@ void IrradianceCacheFrame::forget() {
   if (maps_) maps_->forget();
   cache_.forget();
   settled_ = false;
-  clip_ = glm::dmat4(0.0);
 }
 
 bool IrradianceCacheFrame::lacksLight(std::size_t frames) const {

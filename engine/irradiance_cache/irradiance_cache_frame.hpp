@@ -70,8 +70,7 @@ class IrradianceCacheFrame final : public FrameTechnique {
   VisibleSurfaces visible_;
   IrradianceCache cache_;
   std::optional<Reflections> reflections_;  ///< if something reflects
-  /// The view for which they were last updated, the frame of its first update, and whether no work is left.
-  glm::dmat4 clip_{0.0};
+  /// The view for which they were last updated, the update that first saw all of it, and whether no work is left.
   glm::dvec3 volumePosition_{0.0}, volumeDirection_{0.0};
   std::uint32_t since_ = 0;
   bool settled_ = false;

@@ -21,13 +21,15 @@ Reflections::Reflections(gl::ProgramLibrary& programs, const Scene& scene, const
 
 void Reflections::resize(glm::ivec2 size) { radiance_ = gl::Texture("reflections", gl::Format::rgba32f, size); }
 
-void Reflections::record(const std::function<void()>& bind) {
+void Reflections::record(int sample, int samples, const std::function<void()>& bind) {
   const gl::ComputePass pass("cache reflections", gl::Barrier::textureFetch | gl::Barrier::image, gl::Barrier::image);
   program_->use();
   bind();
-  program_->set("rays", rays_);
+  const int rays = (rays_ + samples - 1) / samples;
+  program_->set("rays", rays);
+  program_->set("pixelSample", sample);
   radiance_.bindImage(0, gl::Access::write);
-  const double iterations = (1.0 + kRaysOfEach * rays_ * (1 + lamps_)) * gl::kIterationsOfRay;
+  const double iterations = (1.0 + kRaysOfEach * rays * (1 + lamps_)) * gl::kIterationsOfRay;
   chunks_.forEach(radiance_.size2d(), iterations, kReflectionGroup, [&](glm::ivec2 corner, glm::ivec2 size) {
     program_->set("firstPixel", corner);
     pass.dispatch(glm::ivec3(size, 1), glm::ivec3(kReflectionGroup, kReflectionGroup, 1));

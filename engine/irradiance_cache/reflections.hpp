@@ -20,8 +20,9 @@ class Reflections {
               double unmeasured);
 
   void resize(glm::ivec2 size);
-  /// For the view that the records were last updated for. bind: scene, records and their constants.
-  void record(const std::function<void()>& bind);
+  /// For the view that the records were last updated for. sample: number of the pixels' sample, each of which takes
+  /// its share of the rays, at least one. bind: scene, records and their constants.
+  void record(int sample, int samples, const std::function<void()>& bind);
   void bindForShading() const;  ///< unit UNIT_REFLECTED for shaders/irradiance_cache/surface.frag
   double largestIterations() const { return chunks_.largestIterations(); }
   std::size_t gpuBytes() const { return radiance_.bytes(); }

@@ -70,6 +70,7 @@ void LpvFrame::prepare(RenderSettings& settings, const Scene& scene) {
         "scatters");
   settings.of<ReflectiveShadowMap::Settings>().haze = hasHaze;
   settings.textures.boundaries = !hasHaze;
+  if (hasHaze) settings.shadows = ShadowTransport::map;  // points in the air look into it
 }
 
 LpvFrame::LpvFrame(const FrameParts& parts) : parts_(parts) {

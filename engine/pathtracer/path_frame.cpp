@@ -12,6 +12,7 @@ namespace {
 PathTracer::Settings tracerSettings(const RenderSettings& settings) {
   PathTracer::Settings tracer;
   tracer.size = settings.size;
+  tracer.filter = settings.filter;
   tracer.transport = transportOf(settings.component);
   const auto& path = settings.of<PathSettings>();
   tracer.bounces = path.scatterings;

@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "base/hash.hpp"
+#include "base/named_values.hpp"
 #include "measure/light_kinds.hpp"
 #include "pathtracer/path_tracer.hpp"
 
@@ -12,21 +13,24 @@
 namespace lucerna {
 
 PathSampler::PathSampler(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
-                         const Camera& camera, glm::ivec2 size, Transport transport, bool allMaterials, int bounces)
+                         const Camera& camera, glm::ivec2 size, PixelFilter filter, Transport transport,
+                         bool allMaterials, int bounces)
     : context_(context),
       programs_(programs),
       scene_(scene),
       camera_(camera),
       size_(size),
+      filter_(filter),
       transport_(transport),
       allMaterials_(allMaterials),
       bounces_(bounces) {}
 
 PathSampler::~PathSampler() = default;
 
-std::string PathSampler::version() const {
-  std::string text(allMaterials_ ? kVersionOfAllMaterials : kVersion);
-  if (bounces_ > 0) text += fmt::format(", {} bounces", bounces_);
+std::string PathSampler::versionOf(PixelFilter filter, bool allMaterials, int bounces) {
+  std::string text =
+      fmt::format("path tracer 3, filter {}, {}", nameOf(filter), allMaterials ? "all materials" : "lambert");
+  if (bounces > 0) text += fmt::format(", {} bounces", bounces);
   return text;
 }
 
@@ -43,7 +47,7 @@ Image PathSampler::sample(std::uint64_t first, std::uint32_t samples) {
     settings.size = size_;
     settings.transport = transport_;
     settings.diffuseOnly = !allMaterials_;
-    settings.pixelCentres = true;
+    settings.filter = filter_;
     if (bounces_ > 0)
       settings.bounces = 1u + static_cast<std::uint32_t>(bounces_);  // the first scattering is direct light
     // A different seed for each transport and each choice of lights: their noise must be independent.
@@ -62,29 +66,53 @@ Image PathSampler::sample(std::uint64_t first, std::uint32_t samples) {
   return tracer_->mean();
 }
 
-Image seenLights(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Camera& camera,
-                 glm::ivec2 size) {
+namespace {
+
+/// Camera rays alone, enough to pass media and thin boundaries by chance, and for smooth edges.
+PathTracer seeingTracer(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
+                        const Camera& camera, glm::ivec2 size, PixelFilter filter) {
   PathTracer::Settings settings;
   settings.size = size;
   settings.bounces = 0;
-  settings.diffuseOnly = settings.pixelCentres = true;
+  settings.diffuseOnly = true;
+  settings.filter = filter;
   settings.nextEvent = false;
   PathTracer tracer(context, programs, scene, settings);
   tracer.setCamera(camera);
-  tracer.record(16);  // enough to pass media and thin boundaries by chance
-  return tracer.mean();
+  tracer.record(filter == PixelFilter::centre ? 16 : 1024);
+  return tracer;
+}
+
+}  // namespace
+
+Image seenLights(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Camera& camera,
+                 glm::ivec2 size, PixelFilter filter) {
+  return seeingTracer(context, programs, scene, camera, size, filter).mean();
+}
+
+std::vector<bool> emitterEdges(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
+                               const Camera& camera, glm::ivec2 size, PixelFilter filter) {
+  Scene shining = measure::litBy(scene, {false, false, true, false});
+  shining.background = glm::vec3(0.0f);
+  shining.media.clear();
+  shining.cameraMedium = -1;
+  for (Material& material : shining.materials) material.interior = -1;
+  const Image error = seeingTracer(context, programs, shining, camera, size, filter).standardError();
+  std::vector<bool> edges;
+  for (const glm::vec3& e : error.pixels) edges.push_back(e != glm::vec3(0.0f));
+  return edges;
 }
 
 // Surfaces that emit their albedo, without other light.
 Image albedoPicture(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Camera& camera,
-                    glm::ivec2 size) {
+                    glm::ivec2 size, PixelFilter filter) {
   Scene shining = measure::litBy(scene, {false, false, false, false});
   shining.background = glm::vec3(0.0f);
   for (Material& m : shining.materials) {
     m.emission = m.emissionScale = m.diffuse;
     m.emissionTexture = m.diffuseTexture;
   }
-  return seenLights(context, programs, shining, camera, size);
+  return seenLights(context, programs, shining, camera, size, filter);
 }
 
 }  // namespace lucerna

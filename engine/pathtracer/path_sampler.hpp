@@ -1,7 +1,8 @@
 // The path tracer as the sampler of references: corrected, restricted to one transport, with Lambertian surfaces unless
-// all materials are requested, and camera rays through pixel centres as in forward shading.
+// all materials are requested, and camera rays over the pixels' filter, as a camera sees them.
 #pragma once
 
+#include "base/pixel_filter.hpp"
 #include "gl/context.hpp"
 #include "gl/program.hpp"
 #include "measure/reference.hpp"
@@ -9,6 +10,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace lucerna {
 
@@ -16,20 +18,18 @@ class PathTracer;
 
 class PathSampler {
  public:
-  /// Part of the references' key: incremented when the path tracer's result changes.
-  static constexpr std::string_view kVersion = "path tracer 2, pixel centres, lambert";
-  static constexpr std::string_view kVersionOfAllMaterials = "path tracer 2, pixel centres, all materials";
+  /// The sampler's part of a reference's key: another when the path tracer's result changes.
+  static std::string versionOf(PixelFilter filter, bool allMaterials = false, int bounces = 0);
 
   /// bounces: maximum for indirect light; 0: any number.
   PathSampler(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Camera& camera,
-              glm::ivec2 size, Transport transport, bool allMaterials = false, int bounces = 0);
+              glm::ivec2 size, PixelFilter filter, Transport transport, bool allMaterials = false, int bounces = 0);
   ~PathSampler();
   PathSampler(const PathSampler&) = delete;
   PathSampler& operator=(const PathSampler&) = delete;
 
   measure::Sampler asSampler();
-  /// kVersion or kVersionOfAllMaterials, and the bounces: the sampler's part of a reference's key.
-  std::string version() const;
+  std::string version() const { return versionOf(filter_, allMaterials_, bounces_); }
 
  private:
   Image sample(std::uint64_t first, std::uint32_t samples);
@@ -39,6 +39,7 @@ class PathSampler {
   const Scene& scene_;
   Camera camera_;
   glm::ivec2 size_;
+  PixelFilter filter_;
   Transport transport_;
   bool allMaterials_;
   int bounces_;
@@ -47,9 +48,12 @@ class PathSampler {
 
 /// Only directly visible lights, nothing scattered: emissive surfaces, environment, background.
 Image seenLights(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Camera& camera,
-                 glm::ivec2 size);
-/// The albedo visible through the pixels' centres; 0 where there is no surface.
+                 glm::ivec2 size, PixelFilter filter);
+/// Pixels that an emissive surface covers in part.
+std::vector<bool> emitterEdges(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
+                               const Camera& camera, glm::ivec2 size, PixelFilter filter);
+/// The albedo that pixels show; 0 where there is no surface.
 Image albedoPicture(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Camera& camera,
-                    glm::ivec2 size);
+                    glm::ivec2 size, PixelFilter filter);
 
 }  // namespace lucerna

@@ -122,6 +122,12 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
       densities_ = storageOf("path densities", packed.densities, capabilities);
     }
   }
+  static_assert(kFilterNodes == 4 * std::extent_v<decltype(constants_.filterQuantiles)>);
+  if (settings.filter != PixelFilter::centre && settings.filter != PixelFilter::box) {
+    const auto quantiles = filterQuantiles(settings.filter);
+    for (std::size_t i = 0; i < quantiles.size(); ++i)
+      constants_.filterQuantiles[i / 4][static_cast<int>(i % 4)] = quantiles[i];
+  }
   constants_.background = scene.background;
   constants_.seed = settings.seed;
   constants_.minScatterings = 0;
@@ -192,7 +198,9 @@ gl::ShaderFlags PathTracer::flags() const {
                          {"UNSCALED_REFRACTION", settings_.deviations.unscaledRefraction},
                          {"LINEAR_SEEDS", settings_.deviations.linearSeeds},
                          {"FIXED_EPSILON", settings_.deviations.fixedEpsilon},
-                         {"PIXEL_CENTRES", settings_.pixelCentres},
+                         {"PIXEL_FILTER", settings_.filter == PixelFilter::centre ? 0
+                                          : settings_.filter == PixelFilter::box  ? 1
+                                                                                  : 2},
                          {"UNOCCLUDED", settings_.transport == Transport::oneBounceUnoccluded},
                          {"FRESNEL_AMPLITUDES", settings_.deviations.fresnelAmplitudes},
                          {"FRESNEL_SCHLICK", settings_.deviations.schlick}});

@@ -8,6 +8,7 @@
 
 #include "base/hash.hpp"
 #include "base/image.hpp"
+#include "base/pixel_filter.hpp"
 #include "gl/context.hpp"
 #include "gl/objects.hpp"
 #include "gl/chunks.hpp"
@@ -42,7 +43,7 @@ class PathTracer {
         false;  ///< treat every scattering surface as Lambert with its `diffuse`, as forward shading does
     bool walks = true;  ///< no rays in dense media where no triangle is near; the picture is the same, bit by bit
     bool nextEvent = true;  ///< sample lights directly; without it only lights that rays can hit contribute
-    bool pixelCentres = false;  ///< camera rays through pixel centres, as raster techniques shade; else a box filter
+    PixelFilter filter = PixelFilter::box;  ///< of camera rays
     std::uint32_t seed = 0;  ///< pictures of different seeds are independent
     double submissionSeconds = 0.05;
     RayScene::Settings rays;

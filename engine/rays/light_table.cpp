@@ -77,6 +77,7 @@ LightTable lightTable(const Scene& scene, const glm::dvec3& origin) {
     light.kind = PATH_LIGHT_SUN;
     light.b = glm::vec3(scene.sun->direction);
     light.c = scene.sun->irradiance;
+    light.size = static_cast<float>(2.0 * std::pow(std::sin(0.25 * scene.sun->angularDiameter), 2.0));
     add(light, worth(light.c) * disc);
   }
   for (const SpotLight& spot : scene.spots) {
@@ -85,6 +86,7 @@ LightTable lightTable(const Scene& scene, const glm::dvec3& origin) {
     light.a = place(spot.position);
     light.b = glm::vec3(spot.direction);
     light.c = spot.intensity;
+    light.size = static_cast<float>(spot.radius);
     light.p = std::bit_cast<std::uint32_t>(static_cast<float>(std::cos(spot.innerAngle)));
     light.q = std::bit_cast<std::uint32_t>(static_cast<float>(std::cos(spot.outerAngle)));
     add(light, worth(light.c) * 2.0 * kPi * (1.0 - 0.5 * (std::cos(spot.innerAngle) + std::cos(spot.outerAngle))));
@@ -94,6 +96,7 @@ LightTable lightTable(const Scene& scene, const glm::dvec3& origin) {
     light.kind = PATH_LIGHT_POINT;
     light.a = place(point.position);
     light.c = point.intensity;
+    light.size = static_cast<float>(point.radius);
     add(light, worth(light.c) * 4.0 * kPi);
   }
   // Emissive triangles.

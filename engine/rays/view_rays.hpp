@@ -6,7 +6,8 @@
 
 namespace lucerna {
 
-/// `origin`: of the ray caster.
-void setView(shared::PathConstants& constants, const Camera& camera, const glm::dvec3& origin, glm::ivec2 size);
+/// `origin`: of the ray caster. `offset`: pixels by which all rays are moved, to the right and up.
+void setView(shared::PathConstants& constants, const Camera& camera, const glm::dvec3& origin, glm::ivec2 size,
+             const glm::dvec2& offset = glm::dvec2(0.0));
 
 }  // namespace lucerna

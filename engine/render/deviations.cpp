@@ -19,6 +19,7 @@ void applyFidelity(RenderSettings& settings, Fidelity fidelity) {
     deviation.turn(settings, fidelity == Fidelity::demo ? deviation.inDemo()
                                                         : fidelity != Fidelity::corrected && deviation.inOriginal());
   if (fidelity == Fidelity::corrected) return;
+  settings.shadows = ShadowTransport::map;
   for (const TechniqueEntry& technique : allTechniques())
     if (technique.publish) technique.publish(settings);
 }

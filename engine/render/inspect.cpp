@@ -45,9 +45,13 @@ PixelInspection Renderer::inspect(gl::ProgramLibrary& programs, const Camera& ca
   PixelInspection answer;
   answer.pixel = pixel;
   answer.technique = settings_.technique;
-  answer.radiance = texelAt(radiance_, fromBelow);
   const FrameView view = viewOf(camera, camera);
+  FrameView centres = view;
+  centres.isNew = false;
+  if (accumulates()) drawFrame(centres, {}, false);
+  answer.radiance = texelAt(radiance_, fromBelow);
   const InspectedTerms terms = drawInspected(programs, view, fromBelow);
+  if (accumulates() && isSettled()) antialiasing_.writeMean(radianceTarget_, noAttributes_);  // what was shown
   if (terms.fourth(INSPECTED_POSITION) != 1.0f) {  // no surface, or a patch's back
     answer.add("seen directly", "what lies behind the scene", answer.radiance);
     return answer;
@@ -70,8 +74,7 @@ void Renderer::addDirectShares(const InspectedTerms& terms, PixelInspection& ans
   const auto lamps = [&](const std::vector<LightViews>& lights, std::size_t first) {
     for (std::size_t i = 0; i < lights.size() && localLights_; ++i)
       answer.add("direct", fmt::format("{} {}", lights[i].isPoint ? "point" : "spot", lights[i].index + 1),
-                 glm::dvec3(terms[first + i]),
-                 {position, lights[i].position + origin_});
+                 glm::dvec3(terms[first + i]), {position, lights[i].position + origin_});
   };
   lamps(spots_, INSPECTED_SPOTS);
   lamps(points_, INSPECTED_POINTS);

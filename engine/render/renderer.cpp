@@ -76,9 +76,12 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
       sceneExposure_(scene.exposure),
       exposure_(settings.exposure.value_or(scene.exposure)),
       timer_(context.capabilities().softwareRenderer),
+      traced_(scene, context.capabilities()),
       frameConstants_("frame constants", sizeof(shared::FrameConstants), nullptr, gl::Usage::dynamicDraw),
       noAttributes_("full screen"),
-      surfaceChunks_(settings.unmeasuredIterations) {
+      surfaceChunks_(settings.unmeasuredIterations),
+      samples_(pixelSamples(settings.filter, settings.pixelSamples)),
+      antialiasing_(programs) {
   allocateTargets();
   const TechniqueEntry& technique = techniqueNamed(settings.technique);
   const bool isNeeded = technique.isNeeded(settings_, features_);
@@ -92,6 +95,7 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
     return;
   }
   if (technique.prepare) technique.prepare(settings_, aboutOrigin(scene));
+  settings_.textures.pixelSamples = settings_.filter == PixelFilter::centre ? 1 : settings_.pixelSamples;
   gpuScene_.emplace(geometry_ ? geometry_->geometry() : aboutOrigin(scene), features_, context.capabilities(),
                     settings_.textures);
   if (moved_) moved_->textures.clear();  // they are on the GPU now
@@ -100,8 +104,11 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
   spots_ = spotViews(drawn);
   points_ = pointViews(drawn);
   const bool reflectsLamps = technique.readsLightMaps && technique.readsLightMaps(settings_, features_);
-  if ((showsDirect() || reflectsLamps) && LocalLights::isNeeded(features_)) {
-    const auto most = static_cast<std::size_t>(settings_.lights.shadows);
+  const bool byRays = settings_.shadows == ShadowTransport::rays;
+  const bool isCrowded = byRays && spots_.size() + points_.size() >= std::size_t{ShadowRays::kMostLights};
+  if (((showsDirect() && !byRays) || reflectsLamps || isCrowded) && LocalLights::isNeeded(features_)) {
+    const auto most = byRays && !reflectsLamps ? std::size_t{ShadowRays::kMostLights / 2 - 1}
+                                               : static_cast<std::size_t>(settings_.lights.shadows);
     for (std::vector<LightViews>* lamps : {&spots_, &points_})
       std::ranges::move(keepMostImportant(programs, *gpuScene_, *lamps, most), std::back_inserter(plainLamps_));
   }
@@ -137,9 +144,9 @@ void Renderer::warnOfWhatIsLeftOut(const TechniqueEntry& technique) const {
                fmt::join(environmentTechniques(), ", "));
 }
 
-FrameParts Renderer::parts(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene) const {
-  return {context, programs, settings_,  features_, scene,  origin_,         gpuScene_,    sunFrustum_,
-          spots_,  points_,  sunShadow_, radiance_, depth_, radianceTarget_, noAttributes_};
+FrameParts Renderer::parts(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene) {
+  return {context, programs, settings_,  features_, scene,     origin_, gpuScene_,       sunFrustum_,
+          spots_,  points_,  sunShadow_, traced_,   radiance_, depth_,  radianceTarget_, noAttributes_};
 }
 
 bool Renderer::showsDirect() const {
@@ -152,6 +159,19 @@ const Scene& Renderer::aboutOrigin(const Scene& scene) {
 }
 
 void Renderer::makeShadowMaps(gl::ProgramLibrary& programs) {
+  if (settings_.shadows == ShadowTransport::rays) {
+    std::vector<LightViews> lamps = spots_;
+    lamps.insert(lamps.end(), points_.begin(), points_.end());
+    lamps.insert(lamps.end(), plainLamps_.begin(), plainLamps_.end());
+    if (!lamps.empty())
+      localLights_.emplace(programs, *gpuScene_, settings_.lights, std::vector<LightViews>{}, std::vector<LightViews>{},
+                           lamps);
+    ShadowRays::Lights lights{{}, rayShadowedLamps()};
+    if (features_.directionalLight) lights.sun = gpuScene_->scene().sun;
+    shadowRays_.emplace(programs, traced_.get(), origin_, lights, settings_.unmeasuredIterations);
+    shadowRays_->resize(settings_.size);
+    return;
+  }
   if (SunShadow::isNeeded(features_)) {
     SunShadow::Settings shadow = settings_.shadow;
     if (shadow.cascades.cascades == SunCascadeSettings::kAuto)
@@ -170,10 +190,14 @@ SurfacePrograms Renderer::surfacePrograms(gl::ProgramLibrary& programs, bool ins
   const auto loadSurface = [&](const std::string& name, bool masked) {
     gl::ShaderFlags flags = gpuScene_->materialFlags(masked);
     const bool showsRest = settings_.component != Component::indirect;  // emission belongs to direct light
-    flags.insert(flags.end(), {{"SUN", sunShadow_.has_value()},
+    flags.insert(flags.end(), {{"SUN", shadowRays_ ? features_.directionalLight : sunShadow_.has_value()},
                                {"SUN_CASCADES", sunShadow_ ? sunShadow_->cascades() : 0},
-                               {"SPOTS", localLights_ ? static_cast<int>(spots_.size()) : 0},
-                               {"POINTS", localLights_ ? static_cast<int>(points_.size()) : 0},
+                               {"SPOTS", localLights_ && !shadowRays_ ? static_cast<int>(spots_.size()) : 0},
+                               {"POINTS", localLights_ && !shadowRays_ ? static_cast<int>(points_.size()) : 0},
+                               {"SHADOW_RAYS", shadowRays_.has_value()},
+                               {"SHADOW_RAY_LAMPS", shadowRays_ ? rayShadowedLamps() : 0},
+                               {"SPOT_LAMPS", static_cast<int>(spots_.size())},
+                               {"INSPECTED_LAMPS", static_cast<int>(spots_.size() + points_.size())},
                                {"PLAIN_LAMPS", localLights_ && localLights_->hasPlainLamps()},
                                {"EMISSION", features_.emission && showsRest},
                                {"INSPECTED", inspected}});
@@ -208,28 +232,40 @@ void Renderer::allocateTargets() {
   radianceTarget_ = gl::Framebuffer("radiance", radiance, &depth_);
   depthTarget_ = gl::Framebuffer("depth", {}, &depth_);
   displayTarget_ = gl::Framebuffer("display", display);
+  antialiasing_.resize(settings_.size);
+  view_.reset();
+  shown_ = &radiance_;
 }
 
 void Renderer::resize(glm::ivec2 size) {
   if (size == settings_.size || size.x <= 0 || size.y <= 0) return;
   settings_.size = size;
   allocateTargets();
+  if (shadowRays_) shadowRays_->resize(size);
   if (technique_) technique_->resize();
 }
 
 void Renderer::apply(const RenderSettings& settings) {
   settings_.reuse = settings.reuse;
+  settings_.reprojection = settings.reprojection;
   exposure_ = settings.exposure.value_or(sceneExposure_);
 }
 
 void Renderer::forget() {
   shadowsMade_ = false;
+  view_.reset();
+  antialiasing_.forget();
   if (technique_) technique_->forget();
 }
 
-void Renderer::recordShadows(const Camera& camera) {
+int Renderer::rayShadowedLamps() const {
+  const std::size_t lamps = spots_.size() + points_.size() + plainLamps_.size();
+  return static_cast<int>(std::min(lamps, std::size_t{ShadowRays::kMostLights - 1}));
+}
+
+void Renderer::recordShadows(const Camera& camera, bool viewIsNew) {
   const bool areMade = settings_.reuse && shadowsMade_;
-  if (sunShadow_ && (sunShadow_->followsCamera() || !areMade)) {
+  if (sunShadow_ && ((viewIsNew && sunShadow_->followsCamera()) || !areMade)) {
     const gl::TimeQuery::Scope stage(timer_, "shadow");
     const double aspect = static_cast<double>(settings_.size.x) / settings_.size.y;
     sunShadow_->record(*gpuScene_, sunFrustum_, camera, aspect, nearPlane(gpuScene_->scene().bounds));
@@ -245,11 +281,17 @@ void Renderer::recordShadows(const Camera& camera) {
   shadowsMade_ = true;
 }
 
-FrameView Renderer::viewOf(const Camera& cameraInScene, const Camera& volumeCameraInScene) const {
+FrameView Renderer::viewOf(const Camera& cameraInScene, const Camera& volumeCameraInScene,
+                           const glm::dvec2& offset) const {
   FrameView view{cameraInScene, volumeCameraInScene, glm::dmat4(1.0), glm::mat4(1.0f), glm::vec3(0.0f)};
+  view.offset = offset;
   view.camera.position -= origin_;
   view.volumeCamera.position -= origin_;
   view.clip = clipFromWorld(view.camera, gpuScene_->scene().bounds, settings_.size);
+  if (offset != glm::dvec2(0.0)) {
+    const glm::dvec2 moved = -2.0 * offset / glm::dvec2(settings_.size);
+    view.clip = glm::translate(glm::dmat4(1.0), glm::dvec3(moved, 0.0)) * view.clip;
+  }
   view.clipFromWorld = glm::mat4(view.clip);
   view.viewPoint = glm::vec3(view.camera.position);
   return view;
@@ -290,6 +332,7 @@ void Renderer::bindFrameConstants(const shared::FrameConstants& constants) {
 }
 
 void Renderer::bindForShading() const {
+  if (shadowRays_) shadowRays_->bindForShading();
   if (sunShadow_) sunShadow_->bindForShading();
   if (localLights_) localLights_->bindForShading();
   if (technique_) technique_->bindForShading();
@@ -345,46 +388,139 @@ double Renderer::iterationsOfSurface() const {
 }
 
 double Renderer::largestIterations() const {
-  return std::max(surfaceChunks_.largestIterations(), technique_ ? technique_->largestIterations() : 0.0);
+  return std::max({surfaceChunks_.largestIterations(), shadowRays_ ? shadowRays_->largestIterations() : 0.0,
+                   technique_ ? technique_->largestIterations() : 0.0});
 }
 
-void Renderer::render(const Camera& camera, const Camera& volumeCamera) { renderFrame(camera, volumeCamera, {}); }
+// Whether the view is another than that of the frame before.
+bool Renderer::beginView(const Camera& camera, const Camera& volumeCamera) {
+  if (view_ && camera.seesAs(view_->camera) && volumeCamera.seesAs(view_->volumeCamera)) return false;
+  view_ = View{camera, volumeCamera, std::vector<bool>(samples_.size(), false)};
+  antialiasing_.clear();
+  return true;
+}
+
+void Renderer::render(const Camera& camera, const Camera& volumeCamera) {
+  const bool moves = beginView(camera, volumeCamera);
+  if (!accumulates()) {
+    drawSample(0, {});
+  } else if (!isSettled()) {
+    const int summed = antialiasing_.count();
+    const int sample = summed > 0 ? summed : moves || view_->lacksLight ? nextSample_++ % settings_.pixelSamples : 0;
+    drawSample(sample, {});
+    showAccumulated(sample, moves);
+  } else {
+    bindFrameConstants(viewOf(camera, volumeCamera));  // for the exposure
+  }
+  toneMap();
+  endFrame();
+}
+
+// Frames with all their light are added up in order; until then, and while the view moves, the running mean is shown.
+void Renderer::showAccumulated(int sample, bool moves) {
+  const gl::TimeQuery::Scope stage(timer_, "antialiasing");
+  const bool hasAllLight = !technique_ || technique_->isSettled();
+  if (!hasAllLight) antialiasing_.clear();
+  else if (sample == antialiasing_.count()) antialiasing_.add(radiance_, noAttributes_);
+  view_->lacksLight = !hasAllLight;
+  if (isSettled()) {
+    antialiasing_.writeMean(radianceTarget_, noAttributes_);
+    shown_ = &radiance_;
+    return;
+  }
+  const FrameView centred = viewOf(view_->camera, view_->volumeCamera);
+  antialiasing_.accumulate(
+      {radiance_, depth_, centred.clip, centred.camera.position, samples_[static_cast<std::size_t>(sample)], exposure_},
+      moves, settings_.reprojection, settings_.pixelSamples, noAttributes_);
+  shown_ = &antialiasing_.shown();
+}
+
+bool Renderer::isSettled() const {
+  if (accumulates()) return antialiasing_.count() == settings_.pixelSamples;
+  return !technique_ || technique_->isSettled();
+}
+
+void Renderer::renderSamples(const Camera& camera, const Camera& volumeCamera) {
+  beginView(camera, volumeCamera);
+  antialiasing_.clear();
+  const bool reuse = settings_.reuse;
+  for (int sample = 0; sample < (accumulates() ? settings_.pixelSamples : 1); ++sample) {
+    settings_.reuse = reuse || sample > 0;  // samples share what does not depend on the view
+    drawSample(sample, {});
+    if (accumulates()) antialiasing_.add(radiance_, noAttributes_);
+  }
+  settings_.reuse = reuse;
+  showMean();
+}
 
 void Renderer::renderToTheEnd(const Camera& camera) {
-  renderFrame(camera, camera, {true, false});
-  if (!technique_) return;
-  technique_->collect(true);
-  for (std::size_t frames = 0; technique_->lacksLight(frames); ++frames) {
-    renderFrame(camera, camera, {false, false});
-    technique_->collect(true);
+  beginView(camera, camera);
+  antialiasing_.clear();
+  const bool reuse = settings_.reuse;
+  for (int sample = 0; sample < (accumulates() ? settings_.pixelSamples : 1); ++sample) {
+    settings_.reuse = reuse || sample > 0;
+    drawSample(sample, {true, false});
+    if (technique_) technique_->collect(true);
+    for (std::size_t frames = 0; technique_ && technique_->lacksLight(frames); ++frames) {
+      drawSample(sample, {false, false});
+      technique_->collect(true);
+    }
+    if (accumulates()) antialiasing_.add(radiance_, noAttributes_);
   }
+  settings_.reuse = reuse;
+  showMean();
 }
 
-void Renderer::renderFrame(const Camera& camera, const Camera& volumeCamera, FrameEffort effort) {
+void Renderer::showMean() {
+  if (accumulates()) antialiasing_.writeMean(radianceTarget_, noAttributes_);
+  shown_ = &radiance_;
+  toneMap();
+  endFrame();
+}
+
+void Renderer::drawSample(int sample, FrameEffort effort) {
   if (picture_) {
-    picture_->recordPicture(timer_, camera, effort);
+    picture_->recordPicture(timer_, view_->camera, effort);
     shared::FrameConstants constants{};  // set after the technique's own constants, which share the binding
     constants.exposure = exposure_;
     bindFrameConstants(constants);
-  } else {
-    const FrameView view = viewOf(camera, volumeCamera);
-    bindFrameConstants(view);
-    recordShadows(view.camera);
-    const bool depthIsDrawn = technique_ && technique_->record(timer_, view, effort);
-    shade(view, depthIsDrawn);
-    if (environmentView_) {
-      const gl::TimeQuery::Scope stage(timer_, "environment");
-      environmentView_->record(radianceTarget_, noAttributes_, view.camera, settings_.size);
-    }
-    if (technique_) technique_->addToPicture(timer_, view);
+    return;
   }
-  {
-    const gl::TimeQuery::Scope stage(timer_, "tone mapping");
-    const gl::RasterPass pass("tone map", displayTarget_, {});
-    toneMap_->use();
-    radiance_.bind(0);
-    gl::drawFullScreen(noAttributes_);
+  const auto index = static_cast<std::size_t>(sample);
+  FrameView view = viewOf(view_->camera, view_->volumeCamera, samples_[index]);
+  view.sample = sample;
+  view.isNew = !view_->drawn[index];
+  const bool viewIsNew = std::ranges::none_of(view_->drawn, [](bool drawn) { return drawn; });
+  view_->drawn[index] = true;
+  drawFrame(view, effort, viewIsNew);
+}
+
+void Renderer::drawFrame(const FrameView& view, FrameEffort effort, bool viewIsNew) {
+  bindFrameConstants(view);
+  recordShadows(view.camera, viewIsNew);
+  if (shadowRays_) {
+    const gl::TimeQuery::Scope stage(timer_, "shadow rays");
+    if (localLights_) localLights_->bindForShading();  // its lamps
+    shadowRays_->record({view.camera, view.offset, view.sample, settings_.pixelSamples});
   }
+  const bool depthIsDrawn = technique_ && technique_->record(timer_, view, effort);
+  shade(view, depthIsDrawn);
+  if (environmentView_) {
+    const gl::TimeQuery::Scope stage(timer_, "environment");
+    environmentView_->record(radianceTarget_, noAttributes_, view.camera, settings_.size, view.offset);
+  }
+  if (technique_) technique_->addToPicture(timer_, view);
+}
+
+void Renderer::toneMap() {
+  const gl::TimeQuery::Scope stage(timer_, "tone mapping");
+  const gl::RasterPass pass("tone map", displayTarget_, {});
+  toneMap_->use();
+  shown_->bind(0);
+  gl::drawFullScreen(noAttributes_);
+}
+
+void Renderer::endFrame() {
   timer_.collect();
   if (technique_) technique_->collect(false);
   gl::throwIfReset();
@@ -398,15 +534,18 @@ void Renderer::drain() {
   if (technique_) technique_->collect(true);
 }
 
-Image Renderer::readRadiance() const { return gl::readImage(radiance_); }
+Image Renderer::readRadiance() const { return gl::readImage(*shown_); }
 
 Bitmap Renderer::readDisplay() const { return gl::readBitmap(display_, settings_.size); }
 
 std::size_t Renderer::gpuBytes() const {
-  std::size_t bytes = frameConstants_.bytes() + radiance_.bytes() + depth_.bytes() + display_.bytes();
+  std::size_t bytes =
+      frameConstants_.bytes() + radiance_.bytes() + depth_.bytes() + display_.bytes() + antialiasing_.gpuBytes();
   if (gpuScene_) bytes += gpuScene_->gpuBytes();
   if (sunShadow_) bytes += sunShadow_->gpuBytes();
   if (localLights_) bytes += localLights_->gpuBytes();
+  if (shadowRays_) bytes += shadowRays_->gpuBytes();
+  bytes += traced_.gpuBytes();
   if (technique_) bytes += technique_->gpuBytes();
   if (environmentView_) bytes += environmentView_->gpuBytes();
   return bytes;
@@ -427,6 +566,7 @@ std::vector<std::string> Renderer::leftOut() const {
   for (const auto& [name, needed] : features_.named())
     if (!needed) names.push_back(name);
   const std::pair<const char*, bool> stages[] = {{"shadow map", sunShadow_.has_value()},
+                                                 {"shadow rays", shadowRays_.has_value()},
                                                  {"sun cascades", sunShadow_ && sunShadow_->followsCamera()},
                                                  {"spot shadow maps", localLights_ && localLights_->hasSpots()},
                                                  {"point shadow maps", localLights_ && localLights_->hasPoints()},

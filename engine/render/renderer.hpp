@@ -6,6 +6,7 @@
 #pragma once
 
 #include "base/image.hpp"
+#include "forward/antialiasing.hpp"
 #include "forward/environment_view.hpp"
 #include "forward/gpu_scene.hpp"
 #include "forward/local_lights.hpp"
@@ -17,6 +18,7 @@
 #include "gl/picture_chunks.hpp"
 #include "gl/program.hpp"
 #include "gl/time_query.hpp"
+#include "rays/shadow_rays.hpp"
 #include "scene/features.hpp"
 #include "shared/frame.h"
 
@@ -39,16 +41,21 @@ class Renderer {
   Renderer(const Renderer&) = delete;  // its techniques refer to it
   Renderer& operator=(const Renderer&) = delete;
 
-  /// One frame: the HDR picture, then the display picture. Stages are timed.
+  /// One frame: the HDR picture, then the display picture. Stages are timed. With RenderSettings::pixelSamples frames
+  /// of a view that stands still are added up, and once it isSettled() nothing is drawn any more.
   void render(const Camera& camera) { render(camera, camera); }
   /// The same with the light propagation volume placed for another view, to separate flicker from motion.
   void render(const Camera& camera, const Camera& volumeCamera);
 
-  /// What lit a pixel (counted from the top left) of the last frame, which must have been of this view. Compiles,
-  /// allocates and waits.
+  /// One frame of all samples of each pixel, on its own: its edges do not depend on the frames before.
+  void renderSamples(const Camera& camera, const Camera& volumeCamera);
+
+  /// What lit a pixel's centre (counted from the top left) in the last frame, which must have been of this view.
+  /// Compiles, allocates and waits.
   PixelInspection inspect(gl::ProgramLibrary& programs, const Camera& camera, glm::ivec2 pixel);
 
-  /// The picture that frames of this view converge to: everything accumulated over frames, at once.
+  /// The picture that frames of this view converge to: everything accumulated over frames, at once; the same bits on
+  /// every run.
   void renderToTheEnd(const Camera& camera);
 
   Image readRadiance() const;  ///< linear, scene units, top row first
@@ -60,10 +67,10 @@ class Renderer {
   /// For lines over the last frame, about origin(). `bounds`: the scene's.
   gl::Lines::View linesView(const Camera& camera, const Bounds& bounds) const;
   const glm::dvec3& origin() const { return origin_; }
-  const gl::Texture& radiance() const { return radiance_; }  ///< linear, scene units, bottom row first
+  const gl::Texture& radiance() const { return *shown_; }  ///< linear, scene units, bottom row first
   glm::ivec2 size() const { return settings_.size; }
   void resize(glm::ivec2 size);
-  /// Applies the settings whose cost is SettingCost::uniform (exposure, frame.reuse); others need a new Renderer.
+  /// Applies the settings whose cost is SettingCost::uniform; others need a new Renderer.
   void apply(const RenderSettings& settings);
   void setExposure(float exposure) { exposure_ = exposure; }
   float exposure() const { return exposure_; }
@@ -76,7 +83,7 @@ class Renderer {
   /// Null if the frame needs none. volumeOf(), cacheOf() and others give what is in it.
   const FrameTechnique* technique() const { return technique_.get(); }
   /// Whether more frames of the same view would look the same: nothing accumulates any more.
-  bool isSettled() const { return !technique_ || technique_->isSettled(); }
+  bool isSettled() const;
   /// Drops everything kept from frame to frame: the next frame starts like the first.
   void forget();
   /// Estimated iterations of the largest submission (gl/chunks.hpp) of any frame so far; of the path tracer, which
@@ -89,15 +96,22 @@ class Renderer {
 
  private:
   const Scene& aboutOrigin(const Scene& scene);  ///< makes moved_ if it must be moved
-  FrameParts parts(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene) const;
+  FrameParts parts(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene);
   void makeShadowMaps(gl::ProgramLibrary& programs);
   void loadPrograms(gl::ProgramLibrary& programs);
   void allocateTargets();
-  void renderFrame(const Camera& camera, const Camera& volumeCamera, FrameEffort effort);
-  FrameView viewOf(const Camera& camera, const Camera& volumeCamera) const;
+  bool accumulates() const { return !picture_ && settings_.pixelSamples > 1; }
+  bool beginView(const Camera& camera, const Camera& volumeCamera);
+  void drawSample(int sample, FrameEffort effort);
+  void drawFrame(const FrameView& view, FrameEffort effort, bool viewIsNew);
+  void showMean();
+  void showAccumulated(int sample, bool moves);
+  void toneMap();
+  void endFrame();
+  FrameView viewOf(const Camera& camera, const Camera& volumeCamera, const glm::dvec2& offset = glm::dvec2(0.0)) const;
   void bindFrameConstants(const FrameView& view);
   void bindFrameConstants(const shared::FrameConstants& constants);
-  void recordShadows(const Camera& camera);
+  void recordShadows(const Camera& camera, bool viewIsNew);
   void shade(const FrameView& view, bool depthIsDrawn);
   double iterationsOfSurface() const;  ///< of a pixel of a raster technique
   void bindForShading() const;
@@ -107,7 +121,8 @@ class Renderer {
   void addDirectShares(const InspectedTerms& terms, PixelInspection& answer);
   std::span<const GeometryTechnique::Sides> sides() const;
   void warnOfWhatIsLeftOut(const TechniqueEntry& technique) const;
-  bool showsDirect() const;  ///< direct light of any kind, by shadow maps
+  bool showsDirect() const;  ///< direct light of sun or lamps, with shadows
+  int rayShadowedLamps() const;  ///< the first of localLights_'s lamps
 
   RenderSettings settings_;
   std::uint64_t frames_ = 0;
@@ -116,6 +131,7 @@ class Renderer {
   std::optional<Scene> moved_;  ///< the scene relative to it, if it is not 0
   float sceneExposure_, exposure_;
   gl::TimeQuery timer_;
+  TracedScene traced_;
   std::unique_ptr<FrameTechnique> technique_;  ///< before gpuScene_, which may draw its geometry
   GeometryTechnique* geometry_ = nullptr;  ///< the technique, if it is one of these
   PictureTechnique* picture_ = nullptr;
@@ -129,14 +145,27 @@ class Renderer {
   gl::Framebuffer depthTarget_, radianceTarget_, displayTarget_;
   SurfacePrograms depthPrograms_, surfacePrograms_;
   const gl::Program* toneMap_ = nullptr;
+  const gl::Texture* shown_ = &radiance_;
 
   // Shadow maps of direct light. They are drawn once, except for the sun's cascades, which follow the camera.
   std::optional<SunShadow> sunShadow_;
   std::optional<LocalLights> localLights_;
+  std::optional<ShadowRays> shadowRays_;  ///< instead of maps
   bool shadowsMade_ = false;
 
   std::optional<EnvironmentView> environmentView_;
   gl::PictureChunks surfaceChunks_;
+
+  // The view, and its frames for other points of each pixel.
+  struct View {
+    Camera camera, volumeCamera;
+    std::vector<bool> drawn;  ///< samples of the pixel
+    bool lacksLight = false;  ///< the last frame was one with light that was still to change
+  };
+  std::optional<View> view_;
+  std::vector<glm::dvec2> samples_;  ///< offsets from pixels' centres
+  int nextSample_ = 0;  ///< while light or the view changes
+  Antialiasing antialiasing_;
 };
 
 }  // namespace lucerna

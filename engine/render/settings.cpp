@@ -17,30 +17,45 @@ std::span<const Setting> sharedSettings() {
   using namespace setting_values;
   constexpr auto rebuild = SettingCost::rebuild, uniform = SettingCost::uniform;
   static const std::vector<Setting> table{
+      {"shadow.transport", choice(FRAME_FIELD(shadows)), "",
+       "how the way to sun and lamps is tested: map, maps of depth; rays, exactly, with penumbrae over a pixel's "
+       "samples",
+       "", rebuild, "", "", "shadows"},
       {"shadow.size", number(FRAME_FIELD(shadow.size), 1, 16384), "texels",
-       "side of the sun's shadow map, of each cascade", "", rebuild, "", "", "shadows"},
+       "side of the sun's shadow map, of each cascade", "", rebuild, "shadow.transport=map", "", "shadows"},
       {"shadow.cascades",
        number(FRAME_FIELD(shadow.cascades.cascades), 1, SUN_MAX_CASCADES, "auto", SunCascadeSettings::kAuto), "",
        "shadow maps of the sun along the view; 1: one for the whole scene; auto: one, unless a mesh has less than 4 of "
        "its "
        "texels",
-       "[Zhang2006]", rebuild, "", "", "shadows"},
+       "[Zhang2006]", rebuild, "shadow.transport=map", "", "shadows"},
       {"shadow.split", number(FRAME_FIELD(shadow.cascades.split), 0.0, 1.0), "",
-       "how cascades divide the view's depth: 0 uniformly, 1 logarithmically", "[Zhang2006, section 3.2]", rebuild, "",
-       "", "shadows"},
+       "how cascades divide the view's depth: 0 uniformly, 1 logarithmically", "[Zhang2006, section 3.2]", rebuild,
+       "shadow.transport=map", "", "shadows"},
       {"shadow.lamps", number(FRAME_FIELD(lights.shadows), 0, LIGHTS_MAX_SHADOWS), "of a kind",
        "spots, and omnidirectional lights, with shadow maps, at most: those that light the scene most; the others "
        "shine "
        "through what is before them",
        "", rebuild, "", "", "shadows"},
       {"shadow.spot-size", number(FRAME_FIELD(lights.spotSize), 1, 16384), "texels",
-       "side of a spot light's shadow map", "", rebuild, "", "", "shadows"},
+       "side of a spot light's shadow map", "", rebuild, "shadow.transport=map", "", "shadows"},
       {"shadow.point-size", number(FRAME_FIELD(lights.pointSize), 1, 16384), "texels",
-       "side of each face of an omnidirectional light's shadow map", "", rebuild, "", "", "shadows"},
+       "side of each face of an omnidirectional light's shadow map", "", rebuild, "shadow.transport=map", "",
+       "shadows"},
       {"texture.anisotropy", number(FRAME_FIELD(textures.anisotropy), 1.0, 16.0), "",
        "anisotropic filtering of what is seen, at most; 1 without mipmaps", "", rebuild, "", "", "textures"},
       {"texture.mipmaps", boolean(FRAME_FIELD(textures.mipmaps)), "",
        "textures in smaller versions with distance; off: they flicker", "[LPV2015]", rebuild, "", "", "textures"},
+      {"picture.samples", number(FRAME_FIELD(pixelSamples), 1, 1024), "per pixel",
+       "frames of one view that are added up, each for another point of every pixel", "", rebuild, "",
+       "16; where frames are timed 1", "textures"},
+      {"picture.filter", choice(FRAME_FIELD(filter)), "",
+       "how light counts that falls beside a pixel's centre: box: the pixel's area; gaussian: standard deviation 1/2, "
+       "to "
+       "1.5 pixels; blackman-harris: to 1.5 pixels; centre: one point",
+       "[Ernst2006; Harris1978]", rebuild, "", "", "all"},
+      {"picture.reprojection", boolean(FRAME_FIELD(reprojection)), "",
+       "while the view moves, earlier frames smooth edges too", "[Salvi2016]", uniform, "", "", "textures"},
       {"frame.reuse", boolean(FRAME_FIELD(reuse)), "",
        "reuse unchanged results of the previous frame: maps, volume, cache", "", uniform, "", "", "textures"},
       {"exposure", optionalNumber(FRAME_FIELD(exposure), 1e-12, 1e12), "", "multiplies radiance before tone mapping",

@@ -50,10 +50,11 @@ void addScene(Hash& h, const Scene& scene) {
     h.bytes(t.bitmap.rgba.data(), t.bitmap.rgba.size());
   }
   h.add(scene.sun.has_value());
-  if (scene.sun) h.add(scene.sun->direction), h.add(scene.sun->irradiance);
+  if (scene.sun) h.add(scene.sun->direction), h.add(scene.sun->irradiance), h.add(scene.sun->angularDiameter);
   for (const SpotLight& l : scene.spots)
-    h.add(l.position), h.add(l.direction), h.add(l.intensity), h.add(l.innerAngle), h.add(l.outerAngle);
-  for (const PointLight& l : scene.points) h.add(l.position), h.add(l.intensity);
+    h.add(l.position), h.add(l.direction), h.add(l.intensity), h.add(l.innerAngle), h.add(l.outerAngle),
+        h.add(l.radius);
+  for (const PointLight& l : scene.points) h.add(l.position), h.add(l.intensity), h.add(l.radius);
   for (const Medium& m : scene.media) add(h, m);
   h.add(scene.cameraMedium);
   h.add(scene.environment.has_value());

@@ -21,7 +21,7 @@ void appendLights(Scene& scene, std::span<const ModelLight> lights) {
     const glm::vec3 intensity = colour / (light.attenuation > 0.0f ? light.attenuation : 1.0f);
     const bool placed = isFinite(light.position) && isFinite(intensity);
     if (light.kind == ModelLight::Kind::directional && aimed && isFinite(colour) && !scene.sun) {
-      scene.sun = DirectionalLight{glm::normalize(light.direction), colour};
+      scene.sun = DirectionalLight{glm::normalize(light.direction), colour, kSunDiameter};
     } else if (light.kind == ModelLight::Kind::point && placed) {
       scene.points.push_back({light.position, intensity});
     } else if (light.kind == ModelLight::Kind::spot && placed && aimed && light.outerAngle > 0.0) {

@@ -99,10 +99,14 @@ struct Mesh {
   Bounds bounds;
 };
 
-/// Light from one direction, the sun: parallel rays.
+/// Seen from the Earth, in radians.
+inline constexpr double kSunDiameter = 0.53 * 3.14159265358979323846 / 180.0;
+
+/// The sun: light from a disc, infinitely far away, of the same radiance everywhere.
 struct DirectionalLight {
   glm::dvec3 direction{0.0, -1.0, 0.0};  ///< unit vector along which the light travels
   glm::vec3 irradiance{0.0f};  ///< on a plane perpendicular to the rays, W/m^2 in scene units
+  double angularDiameter = 0.0;  ///< of the disc, radians, below pi; 0: parallel rays, shadows without penumbra
 };
 
 /// A lamp with a cone of light. Radiant intensity at an angle theta from `direction`:
@@ -115,12 +119,15 @@ struct SpotLight {
   glm::vec3 intensity{0.0f};  ///< radiant intensity on the axis, W/sr
   double innerAngle = 0.5;  ///< half angle of the cone of full intensity, radians; 0..outerAngle
   double outerAngle = 0.7;  ///< half angle of the cone, radians; above 0, at most kLargestSpotAngle
+  double radius = 0.0;  ///< as PointLight's
 };
 
 /// A lamp of the same intensity in all directions; its flux is 4 pi intensity.
 struct PointLight {
   glm::dvec3 position{0.0};
   glm::vec3 intensity{0.0f};  ///< radiant intensity, W/sr
+  double radius =
+      0.0;  ///< of a ball that is not seen itself, of the same radiance everywhere, intensity / (pi radius^2)
 };
 
 /// A spot light has one perspective shadow map, so its cone must be well below a half space: 80 degrees.
@@ -179,9 +186,8 @@ struct Scene {
   float exposure = 1.0f;  ///< multiplies radiance before tone mapping
   bool defaultExposure = false;  ///< no file has one: it is chosen for the view (setDefaultExposure)
   std::filesystem::path keyFrames;  ///< the walk's camera path; empty: none named
-  std::size_t degenerateTriangles =
-      0;  ///< of zero area, kept so that counts agree with the file's: code that divides by an area or normalises a
-          ///< face normal must expect them
+  std::size_t degenerateTriangles = 0;  ///< of zero area, kept so that counts agree with the file's: code that divides
+                                        ///< by an area or normalises a face normal must expect them
   std::size_t droppedTriangles = 0;  ///< left out while loading: a position is not finite
 
   std::size_t triangleCount() const { return indices.size() / 3; }

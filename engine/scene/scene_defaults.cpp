@@ -105,7 +105,7 @@ void setKeyFrames(Scene& scene, const fs::path& file) {
 
 void setDefaultSun(Scene& scene) {
   if (scene.sun || !scene.spots.empty() || !scene.points.empty() || isLitByEmission(scene)) return;
-  scene.sun = DirectionalLight{kDefaultSunDirection, kDefaultSunIrradiance};
+  scene.sun = DirectionalLight{kDefaultSunDirection, kDefaultSunIrradiance, kSunDiameter};
   scene.defaultSun = true;
   scene.defaultExposure = true;
 }

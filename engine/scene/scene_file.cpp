@@ -5,11 +5,13 @@
 //   "camera":      {"position": [x,y,z], "target": [x,y,z] or "direction": [x,y,z], "up": [x,y,z],
 //                  "fov": vertical, degrees}
 //   "cameras":     an array of such, each with a "name"; instead of "camera"
-//   "sun":         {"direction": [x,y,z] along which the light travels, "irradiance": [r,g,b]}, or null for none
+//   "sun":         {"direction": [x,y,z] along which the light travels, "irradiance": [r,g,b],
+//                  "angularDiameter": of its disc, degrees (0.53)}, or null for none
 //   "spots":       [{"position": [x,y,z], "direction": [x,y,z] or "target": [x,y,z],
 //                   "intensity": [r,g,b] on the axis, W/sr,
-//                   "innerAngle", "outerAngle": half angles of the cone, degrees; SpotLight has the formula}]
-//   "points":      [{"position": [x,y,z], "intensity": [r,g,b], W/sr}]
+//                   "innerAngle", "outerAngle": half angles of the cone, degrees; SpotLight has the formula,
+//                   "radius": of its ball (0)}]
+//   "points":      [{"position": [x,y,z], "intensity": [r,g,b], W/sr, "radius": of its ball (0)}]
 //                  If one of these is given and "sun" is not, there is no default sun.
 //   "background":  [r,g,b], radiance visible where there is no environment
 //   "exposure":    factor before tone mapping
@@ -93,18 +95,30 @@ std::vector<Camera> readCameras(const Value& array) {
 DirectionalLight readSun(const Value& object) {
   std::optional<glm::dvec3> direction;
   std::optional<glm::vec3> irradiance;
+  double diameter = kSunDiameter;
   readObject(object, {
                          {"direction", [&](const Value& v) { direction = v.unitVector(); }},
                          {"irradiance", [&](const Value& v) { irradiance = v.light(); }},
+                         {"angularDiameter", [&](const Value& v) { diameter = v.number("degrees") * kDegree; }},
                      });
   if (!direction || !irradiance) object.fail("a sun with \"direction\" and \"irradiance\"");
-  return {*direction, *irradiance};
+  if (!(diameter >= 0.0 && diameter <= 90.0 * kDegree)) object.at("angularDiameter").fail("degrees from 0 to 90");
+  return {*direction, *irradiance, diameter};
+}
+
+/// The radius of a lamp's ball.
+auto radiusOf(double& radius) {
+  return [&radius](const Value& v) {
+    radius = v.number("a radius");
+    if (!(radius >= 0.0)) v.fail("a radius, not below 0");
+  };
 }
 
 SpotLight readSpot(const Value& object) {
   std::optional<glm::dvec3> position, direction, target;
   std::optional<glm::vec3> intensity;
   std::optional<double> inner, outer;
+  double radius = 0.0;
   const auto angle = [](std::optional<double>& result) {
     return [&result](const Value& v) { result = v.number("a half angle in degrees") * kDegree; };
   };
@@ -115,6 +129,7 @@ SpotLight readSpot(const Value& object) {
                          {"intensity", [&](const Value& v) { intensity = v.light(); }},
                          {"innerAngle", angle(inner)},
                          {"outerAngle", angle(outer)},
+                         {"radius", radiusOf(radius)},
                      });
   if (!position || !intensity || !inner || !outer)
     object.fail("a spot with \"position\", \"intensity\", \"innerAngle\" and \"outerAngle\"");
@@ -124,18 +139,20 @@ SpotLight readSpot(const Value& object) {
   if (!(*outer > 0.0 && *outer <= kLargestSpotAngle * (1.0 + 1e-12)))
     object.at("outerAngle").fail("a half angle above 0 and at most 80 degrees");
   if (!(*inner >= 0.0 && *inner <= *outer)) object.at("innerAngle").fail("a half angle from 0 to \"outerAngle\"");
-  return {*position, direction ? *direction : glm::normalize(*target - *position), *intensity, *inner, *outer};
+  return {*position, direction ? *direction : glm::normalize(*target - *position), *intensity, *inner, *outer, radius};
 }
 
 PointLight readPoint(const Value& object) {
   std::optional<glm::dvec3> position;
   std::optional<glm::vec3> intensity;
+  double radius = 0.0;
   readObject(object, {
                          {"position", [&](const Value& v) { position = v.vector(); }},
                          {"intensity", [&](const Value& v) { intensity = v.light(); }},
+                         {"radius", radiusOf(radius)},
                      });
   if (!position || !intensity) object.fail("a point light with \"position\" and \"intensity\"");
-  return {*position, *intensity};
+  return {*position, *intensity, radius};
 }
 
 template <class Light>

@@ -22,7 +22,9 @@ in vec3 vNormal;
 in vec2 vTexCoord;
 layout(location = 0) out vec4 radiance;
 
-#if SUN
+#if SHADOW_RAYS
+#include "forward/ray_shadows.glsl"
+#elif SUN
 #include "forward/sun_shadow.glsl"
 #endif
 #if SPOTS || POINTS || PLAIN_LAMPS
@@ -100,7 +102,12 @@ void main() {
   float cosine = dot(normal, -frame.sunDirection);
   if (cosine > 0.0) {
     face = dot(face, face) > 1e-12 ? normalize(dot(face, toCamera) > 0.0 ? face : -face) : meshNormal;
-    vec3 irradiance = frame.sunIrradiance * (cosine * sunVisibility(vPosition, face));
+#if SHADOW_RAYS
+    float visible = lightVisibility(0);
+#else
+    float visible = sunVisibility(vPosition, face);
+#endif
+    vec3 irradiance = frame.sunIrradiance * (cosine * visible);
 #if HAZE
     irradiance *= hazeTransmittance(vPosition, -frame.sunDirection);
 #endif
@@ -125,7 +132,19 @@ void main() {
   vec3 plain = vec3(0.0);
   for (int i = 0; i < plainLamps.length(); ++i) {
     Arriving light = plainLamp(i, vPosition, normal);
-    if (light.cosine > 0.0) plain += reflection(albedo, normal, toCamera, light.toLight) * light.irradiance;
+    if (!(light.cosine > 0.0)) continue;
+    vec3 reflected = reflection(albedo, normal, toCamera, light.toLight) * light.irradiance;
+#if SHADOW_RAYS
+    if (i < SHADOW_RAY_LAMPS) reflected *= lightVisibility(SUN + i);
+#if INSPECTED
+    if (i < INSPECTED_LAMPS) {
+      record(i < SPOT_LAMPS ? INSPECTED_SPOTS + i : INSPECTED_POINTS + i - SPOT_LAMPS, vec4(reflected, 0.0));
+      result += reflected;
+      continue;
+    }
+#endif
+#endif
+    plain += reflected;
   }
   add(result, plain, INSPECTED_PLAIN_LAMPS);
 #endif

@@ -18,7 +18,8 @@ layout(std140, binding = BLOCK_CACHE_PATHS) uniform PathBlock { PathConstants tr
 #include "irradiance_cache/seen.glsl"
 layout(binding = 0) writeonly restrict uniform image2D reflected;
 uniform ivec2 firstPixel;
-uniform int rays;   // per pixel
+uniform int rays;         // per sample of a pixel
+uniform int pixelSample;  // its number: each draws other random numbers
 #if LAMPS
 layout(std430, binding = 4) readonly restrict buffer LampBlock { PathLight lamps[]; };  // the first LAMPS
 #endif
@@ -141,7 +142,7 @@ vec3 reflectedBy(Surface surface, uint triangle, vec3 view, PathNumbers numbers)
       if (isGlass && way == 1 && side > 0.0) break;  // total reflection has been counted
       vec3 start = offsetRay(surface.position, side * surface.geometricNormal, surface.magnitude);
       sum += radianceAlong(Ray(start, 0.0, direction, 3e38), triangle, throughput, 1u,
-                           PathNumbers(numbers.pixel, uint(way), numbers.seed));
+                           PathNumbers(numbers.pixel, 2u * numbers.sampleIndex + uint(way), numbers.seed));
     }
     return sum;
   }
@@ -170,7 +171,8 @@ vec3 reflectedBy(Surface surface, uint triangle, vec3 view, PathNumbers numbers)
     if (!(pdf > 0.0)) continue;
     vec3 throughput = ofRays * facets / (pdf * float(count)) * coatFresnel(coat, clamp(dot(o, h), 0.0, 1.0));
     Ray ray = Ray(offsetRay(surface.position, surface.geometricNormal, surface.magnitude), 0.0, direction, 3e38);
-    sum += radianceAlong(ray, triangle, throughput, 1u, PathNumbers(numbers.pixel, uint(i), numbers.seed));
+    uint number = numbers.sampleIndex * uint(rays) + uint(i);
+    sum += radianceAlong(ray, triangle, throughput, 1u, PathNumbers(numbers.pixel, number, numbers.seed));
   }
 #endif
   return sum;
@@ -189,7 +191,7 @@ void main() {
 #if NORMAL_MAPS
     applyNormalMap(surface, hit.triangle);
 #endif
-    sum = reflectedBy(surface, hit.triangle, view, PathNumbers(uint(index), 0u, tracer.seed));
+    sum = reflectedBy(surface, hit.triangle, view, PathNumbers(uint(index), uint(pixelSample), tracer.seed));
   }
   imageStore(reflected, pixel, vec4(sum, 0.0));
 }

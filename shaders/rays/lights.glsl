@@ -2,12 +2,13 @@
 // SUN, SPOTS, POINTS, EMISSION, ENVIRONMENT_PICTURE. A constant environment is left to scattered rays, which sample it
 // optimally.
 #include "lib/spot.glsl"
+#include "lib/tangent.glsl"
+#include "lib/round_light.glsl"
 
 struct LightSample {
   vec3 direction;  // unit, towards it
-  float pdf;       // density with which this direction is sampled, 1/sr; 0: the light has only one direction
-  // radiance over pdf; for a light with one direction, the irradiance across the rays over the probability of picking
-  // it
+  float pdf;       // density with which this direction is sampled, 1/sr; 0: sun and lamps, which rays do not find
+  // radiance over pdf; of sun and lamps so that its mean over samples, times the cosine, is the irradiance
   vec3 value;
   vec3 end;        // its position; unused at infinity
   bool infinite;
@@ -60,6 +61,10 @@ bool sampleLight(vec3 position, vec2 xi, uvec4 words, out LightSample light) {
     light.direction = -source.b;
     light.infinite = true;
     light.value = source.c / source.probability;
+    if (source.size > 0.0) {  // E = L pi sin^2 of the half angle, of which samples take L 2 pi (1 - cos)
+      light.direction = coneSample(light.direction, source.size, xi);
+      light.value *= 2.0 / (2.0 - source.size);
+    }
     reaches = true;
   }
 #endif
@@ -71,6 +76,12 @@ bool sampleLight(vec3 position, vec2 xi, uvec4 words, out LightSample light) {
     if (reaches) {
       light.direction = away * inversesqrt(distance2);
       light.value = source.c / (source.probability * distance2);
+      if (source.size > 0.0) {  // L = I / (pi r^2), of which samples take L 2 pi (1 - cos)
+        float lessCosine = ballLessCosine(source.size, distance2);
+        light.value *= 2.0 * lessCosine * distance2 / (source.size * source.size);
+        light.direction = coneSample(light.direction, lessCosine, xi);
+        light.end = position + light.direction * distanceToBall(away, source.size, light.direction);
+      }
 #if SPOTS
       if (source.kind == PATH_LIGHT_SPOT)
         light.value *=

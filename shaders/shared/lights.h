@@ -32,14 +32,14 @@ struct LightConstants {
   PointLightConstants points[LIGHTS_MAX_SHADOWS];
 };
 
-// A lamp without a shadow map.
+// A lamp without a shadow map; rays may tell whether it is visible (rays/shadow_rays.comp).
 struct PlainLamp {
   vec3 position;
   float cosInner;
   vec3 direction;      // of a spot
   float cosOuter;      // below -1: omnidirectional
   vec3 intensity;      // W/sr, of a spot on its axis
-  float padding;
+  float radius;        // of its ball
 };
 
 SHARED_END

@@ -50,6 +50,7 @@ struct PathConstants {
   ivec4 picture;            // size of the picture; z: the lanes of the state buffer, at least those of the tile
   int isOrthographic;
   int padding0, padding1, padding2;
+  vec4 filterQuantiles[16]; // of the pixel filter (engine/base/pixel_filter.hpp), four in each
 };
 
 // Position of a texture in the atlas; layer is PATH_NO_TEXTURE if there is none.
@@ -88,7 +89,7 @@ struct PathLight {
   float threshold;          // of the alias table: below it this light is picked, otherwise alias
   uint alias;
   float probability;        // of being picked
-  float padding;
+  float size;               // radius of a lamp's ball; 1 - cosine of half the sun's angular diameter
 };
 
 SHARED_END

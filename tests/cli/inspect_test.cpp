@@ -29,9 +29,11 @@ class Inspect : public ::testing::Test {
     EXPECT_EQ(result.exitCode, 0) << result.err;
     return result.exitCode == 0 ? json::parse(result.out) : json();
   }
-  /// The pixel of the picture that the same options draw.
+  /// The pixel's centre in the picture that the same options draw.
   glm::dvec3 drawn(const std::string& scene, const std::string& options, int x, int y) const {
-    const RunResult result = RUN_LUCERNA("render '" + scene + "' " + options + " --quiet -o " + path("picture.pfm"));
+    const RunResult result = RUN_LUCERNA("render '" + scene + "' " + options +
+                                         (options.find("path") == std::string::npos ? " --pixel-samples 1" : "") +
+                                         " --quiet -o " + path("picture.pfm"));
     EXPECT_EQ(result.exitCode, 0) << result.err;
     return glm::dvec3(lucerna::readImage(path("picture.pfm")).at(x, y));
   }

@@ -57,7 +57,7 @@ TEST_F(Coats, AreReciprocal) {
     SceneBuilder builder = floorOf({0.7, 0.4, 0.1}, {0.04, 0.2, 0.8}, 0.3);
     builder.sun(-towards(-from), glm::vec3(1.0f));
     PathTracer::Settings settings = sized(1);
-    settings.pixelCentres = true;
+    settings.filter = PixelFilter::centre;
     return glm::dvec3(tracer(builder.scene(), at(to), settings, 1).mean().at(0, 0)) / std::cos(from);
   };
   const glm::dvec3 there = bsdf(one, other), back = bsdf(other, one);

@@ -377,7 +377,7 @@ TEST_F(GlossyTest, AWallReflectsAboutWhatPathsDo) {
     paths.size = kGlossySize;
     paths.transport = Transport::indirect;
     paths.bounces = 2;
-    paths.pixelCentres = true;
+    paths.filter = PixelFilter::centre;
     PathTracer tracer(context(), library(), scene, paths);
     tracer.setCamera(test::openBoxCamera());
     tracer.record(128);

@@ -795,7 +795,8 @@ class IrradianceCacheAgainstPaths : public IrradianceCacheGl {
     s.size = glm::ivec2(64);
     s.transport = transport;
     s.bounces = scatterings;
-    s.diffuseOnly = s.pixelCentres = true;
+    s.diffuseOnly = true;
+    s.filter = PixelFilter::centre;
     PathTracer result(context(), library(), scene, s);
     result.setCamera(camera);
     result.record(256);

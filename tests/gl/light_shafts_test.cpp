@@ -52,7 +52,7 @@ class LightShaftsTest : public test::SharedProgramsTest {
     settings.size = kShaftsSize;
     settings.transport = transport;
     settings.bounces = scatterings;
-    settings.pixelCentres = true;
+    settings.filter = PixelFilter::centre;
     PathTracer tracer(context(), library(), scene, settings);
     tracer.setCamera(camera);
     tracer.record(samples);

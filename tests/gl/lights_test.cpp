@@ -607,7 +607,8 @@ TEST_F(LightsGl, TheGatherOfEachLightIsThatOfPathsThroughWalls) {
     PathTracer::Settings s;
     s.size = {24, 18};
     s.transport = Transport::oneBounceUnoccluded;
-    s.diffuseOnly = s.pixelCentres = true;
+    s.diffuseOnly = true;
+    s.filter = PixelFilter::centre;
     PathTracer tracer(context(), programs(), scene, s);
     tracer.setCamera(camera);
     tracer.record(128);

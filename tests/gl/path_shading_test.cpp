@@ -56,7 +56,7 @@ TEST_F(PathShading, SmoothNormalsAreInterpolatedAndTurnedToTheSideThatIsSeen) {
     const Scene scene = triangle.scene(sun);
     const Camera camera = lookingAt({0.3, 4.0 * side, 0.2}, {0.2, 0.0, 0.1}, 1.0);
     PathTracer::Settings settings = sized(32);
-    settings.pixelCentres = true;
+    settings.filter = PixelFilter::centre;
     settings.transport = Transport::direct;
     const Image traced = tracer(scene, camera, settings, 1).mean();
     RenderSettings forward;
@@ -90,7 +90,7 @@ TEST_F(PathShading, ASmoothMirrorSphereShowsTheEnvironmentWhereItsNormalsSay) {
   scene.environment = halves();  // red from above, green from below
   const Camera camera = lookingAt({0, 0, 6}, {0, 0, 0}, 0.36);
   PathTracer::Settings settings = sized(32);
-  settings.pixelCentres = true;
+  settings.filter = PixelFilter::centre;
   const Image image = tracer(scene, camera, settings, 1).mean();
   int up = 0, down = 0;
   for (int y = 0; y < 32; ++y)
@@ -150,7 +150,7 @@ TEST_F(PathShading, MetalsReflectByTheirAngle) {
         builder.scene().environment.emplace().radiance = glm::vec3(2.0f);
       }
       PathTracer::Settings settings = sized(8);
-      settings.pixelCentres = true;
+      settings.filter = PixelFilter::centre;
       const Camera camera = lookingAt(eye, {0, 0, 0}, 0.05);
       const Image image = tracer(builder.scene(), camera, settings, 1).mean();
       for (int y = 0; y < 8; ++y)
@@ -321,7 +321,7 @@ TEST_F(PathShading, TexturesAndMasksAreReadBetweenTexelCentres) {
   builder.sun({0, 0, -1}, glm::vec3(static_cast<float>(kPi)));
   const Camera camera = lookingAt({0, 0, 4}, {0, 0, 0}, 1.2);
   PathTracer::Settings settings = sized(kPixels);
-  settings.pixelCentres = true;
+  settings.filter = PixelFilter::centre;
   settings.transport = Transport::direct;
   const Image traced = tracer(builder.scene(), camera, settings, 1).mean();
   RenderSettings forward;

@@ -242,7 +242,7 @@ TEST_F(PathTracerTest, SmallestPicturesAndScenes) {
 TEST_F(PathTracerTest, TheErrorFallsWithTheRootOfTheSamplesAndIsHonest) {
   const Scene scene = litBox();
   PathTracer::Settings settings = sized(24);
-  settings.pixelCentres = true;
+  settings.filter = PixelFilter::centre;
   const PathTracer reference = tracer(scene, openBoxCamera(), settings, 1024);
   const Image exact = reference.mean();
   settings.seed = 9;
@@ -307,7 +307,7 @@ TEST_F(PathTracerTest, DirectLightIsThatOfForwardShading) {
   const Image raster = renderer.readRadiance();
   PathTracer::Settings settings = sized(kSize);
   settings.transport = Transport::direct;
-  settings.pixelCentres = true;
+  settings.filter = PixelFilter::centre;
   const PathTracer path = tracer(scene, camera, settings, 192);
   const Image traced = path.mean(), error = path.standardError();
   int off = 0;
@@ -350,7 +350,8 @@ TEST_F(PathTracerTest, DirectLightOfEachKindOfLampIsThatOfForwardShading) {
     const Image raster = renderer.readRadiance();
     PathTracer::Settings settings = sized(kSize);
     settings.transport = Transport::direct;
-    settings.pixelCentres = settings.diffuseOnly = true;
+    settings.diffuseOnly = true;
+    settings.filter = PixelFilter::centre;
     const Image traced = tracer(scene, openBoxCamera(), settings, 16).mean();
     double rasterSum = 0.0, tracedSum = 0.0;
     int off = 0;

@@ -34,7 +34,7 @@ class ReflectionsTest : public PathTest {
   }
   Image traced(const Scene& scene, const Camera& camera, std::uint32_t samples) {
     PathTracer::Settings s = sized(32);
-    s.pixelCentres = true;
+    s.filter = PixelFilter::centre;
     return tracer(scene, camera, s, samples).mean();
   }
   static glm::dvec3 mean(const Image& image) {
@@ -136,7 +136,7 @@ TEST_F(ReflectionsTest, AMirrorShowsTheRecords) {
   scene.environment.emplace().radiance = glm::vec3(0.4f);
   const RenderSettings s = settings();
   PathTracer::Settings path = sized(32);
-  path.pixelCentres = true;
+  path.filter = PixelFilter::centre;
   const Image image = drawn(scene, openBoxCamera(), s), expected = tracer(scene, openBoxCamera(), path, 1024).mean();
   double sum = 0.0, all = 0.0;
   for (int y = 12; y < 20; ++y)

@@ -99,7 +99,7 @@ TEST_F(ShadingValues, CoatsReflectEveryKindOfLight) {
         expectHighlight(render(scene, camera), camera, surface, name, irradiance);
         PathTracer::Settings path;
         path.size = kPictureSize;
-        path.pixelCentres = true;
+        path.filter = PixelFilter::centre;
         path.transport = Transport::direct;
         expectHighlight(tracer(scene, camera, path, 1).mean(), camera, surface, name, irradiance);
       };

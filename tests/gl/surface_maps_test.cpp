@@ -41,7 +41,7 @@ class SurfaceMaps : public PathTest {
   }
   Image traced(const Scene& scene, const Camera& camera) {
     PathTracer::Settings settings = sized(16);
-    settings.pixelCentres = true;
+    settings.filter = PixelFilter::centre;
     settings.transport = Transport::direct;
     return tracer(scene, camera, settings, 1).mean();
   }

@@ -31,7 +31,8 @@ class BenchProof : public test::SharedProgramsTest {
     PathTracer::Settings settings;
     settings.size = {kWidth, kHeight};
     settings.transport = transport;
-    settings.diffuseOnly = settings.pixelCentres = true;
+    settings.diffuseOnly = true;
+    settings.filter = PixelFilter::centre;
     settings.seed = seed;
     auto result = std::make_unique<PathTracer>(context(), library(), scene, settings);
     result->setCamera(test::openBoxCamera());
@@ -81,7 +82,8 @@ TEST_F(BenchProof, ErrorFallsWithSlopeMinusOneHalfOverTwoDecades) {
   const auto paint = [&](std::uint32_t seed, std::uint32_t samples) {
     PathTracer::Settings settings;
     settings.size = isLong ? glm::ivec2(64) : glm::ivec2(40);
-    settings.diffuseOnly = settings.pixelCentres = true;
+    settings.diffuseOnly = true;
+    settings.filter = PixelFilter::centre;
     settings.seed = seed;
     PathTracer t(context(), library(), scene, settings);
     t.setCamera(scene.cameras.front());
@@ -141,7 +143,7 @@ TEST_F(BenchProof, PathTracingAsPublishedIsBiased) {
   const auto paint = [&](bool original, std::uint32_t seed, std::uint32_t samples) {
     PathTracer::Settings settings;
     settings.size = {24, 16};
-    settings.pixelCentres = true;
+    settings.filter = PixelFilter::centre;
     settings.seed = seed;
     RenderSettings published;
     applyFidelity(published, Fidelity::original);

@@ -23,7 +23,7 @@ class LiveReference : public SharedProgramsTest {
     PathTracer::Settings settings;
     settings.size = kSize;
     settings.diffuseOnly = true;
-    settings.pixelCentres = true;
+    settings.filter = PixelFilter::centre;
     settings.seed = seed;
     return PathTracer(context(), library(), scene, settings);
   }

@@ -160,7 +160,7 @@ TEST_F(MediaDeviations, LinearSeeds) {
     PathTracer::Settings settings;
     settings.size = {8, 1};
     settings.seed = seed;
-    settings.pixelCentres = true;
+    settings.filter = PixelFilter::centre;
     settings.deviations.linearSeeds = linear;
     PathTracer tracer(context(), library(), scene, settings);
     tracer.record(64);

@@ -131,6 +131,8 @@ TEST(SceneFile, WhatIsWrongIsNamedByFileAndKey) {
       {R"(, "sun": {"direction": [0,-1,0], "irradiance": [1,1,1e37]})", "from 0 to 1e+30"},
       {R"(, "sun": [1, 2, 3])", "\"sun\""},
       {R"(, "sun": {"direction": [0,-1,0]})", "irradiance"},
+      {R"(, "sun": {"direction": [0,-1,0], "irradiance": [1,1,1], "angularDiameter": 120})", "\"sun.angularDiameter\""},
+      {R"(, "points": [{"position": [0,1,0], "intensity": [1,1,1], "radius": -1}])", "\"points[0].radius\""},
       {R"(, "sun": {"direction": [0,0,0], "irradiance": [1,1,1]})", "\"sun.direction\""},
       {R"(, "sun": {"direction": [0,-1,0], "irradiance": [1,1,-1]})", "\"sun.irradiance\""},
       {R"(, "camera": {"target": [0,0,0]})", "\"position\""},
@@ -170,6 +172,21 @@ TEST(SceneFile, WhatIsWrongIsNamedByFileAndKey) {
     EXPECT_TRUE(contains(message, "room.json")) << keys << "\n" << message;
     EXPECT_TRUE(contains(message, expected)) << keys << "\n" << message;
   }
+}
+
+TEST(SceneFile, SunsAndLampsHaveASize) {
+  const SceneFolder folder;
+  const std::string sun = R"(, "sun": {"direction": [0,-1,0], "irradiance": [1,1,1])";
+  EXPECT_EQ(folder.load("").sun->angularDiameter, kSunDiameter);
+  EXPECT_EQ(folder.load(sun + "}").sun->angularDiameter, kSunDiameter);
+  EXPECT_NEAR(folder.load(sun + R"(, "angularDiameter": 2})").sun->angularDiameter, 2.0 * kDegree, 1e-15);
+  EXPECT_EQ(folder.load(sun + R"(, "angularDiameter": 0})").sun->angularDiameter, 0.0);
+  const std::string lamp = R"(, "points": [{"position": [0,1,0], "intensity": [1,1,1])";
+  EXPECT_EQ(folder.load(lamp + "}]").points[0].radius, 0.0);
+  EXPECT_EQ(folder.load(lamp + R"(, "radius": 0.25}])").points[0].radius, 0.25);
+  const std::string spot =
+      R"(, "spots": [{"position": [0,1,0], "direction": [0,-1,0], "intensity": [1,1,1], "innerAngle": 10, "outerAngle": 20)";
+  EXPECT_EQ(folder.load(spot + R"(, "radius": 0.5}])").spots[0].radius, 0.5);
 }
 
 TEST(SceneFile, TheDefaultSunHasItsSkyUnlessAnotherWordIsSaid) {

@@ -1,0 +1,68 @@
+// Smooth edges from frames of one view, each drawn for another point of every pixel (base/pixel_filter.hpp).
+//
+// Still: the frames' plain mean, which converges to the filtered picture. Moving: the mean so far is found in the frame
+// before by the visible surface's place, and limited to what the new frame shows around the pixel, by mean and standard
+// deviation [Salvi2016]; where another surface was seen before, it is dropped. Pictures are linear radiance, in scene
+// units.
+#pragma once
+
+#include "gl/objects.hpp"
+#include "gl/program.hpp"
+
+#include <glm/glm.hpp>
+
+#include <array>
+#include <optional>
+
+namespace lucerna {
+
+class Antialiasing {
+ public:
+  explicit Antialiasing(gl::ProgramLibrary& programs) : programs_(&programs) {}
+  void resize(glm::ivec2 size);
+
+  // The plain mean.
+  void clear() { count_ = 0; }
+  void add(const gl::Texture& radiance, const gl::VertexArray& noAttributes);
+  int count() const { return count_; }
+  void writeMean(const gl::Framebuffer& target, const gl::VertexArray& noAttributes) const;
+
+  /// What a view in motion has to know of a frame.
+  struct Frame {
+    const gl::Texture& radiance;
+    const gl::Texture& depth;
+    glm::dmat4 clip;  ///< from world, through the pixels' centres
+    glm::dvec3 camera;
+    glm::dvec2 offset;  ///< of the frame's samples from there, in pixels
+    float exposure;  ///< what is bright for the eye
+  };
+  /// Adds a frame to the running mean of at most `most` frames. `moves`: the view differs from that of the frame
+  /// before. `reprojects`: if not, a moving view shows its new frame alone.
+  void accumulate(const Frame& frame, bool moves, bool reprojects, int most, const gl::VertexArray& noAttributes);
+  /// The running mean; alpha: the number of frames in it.
+  const gl::Texture& shown() const { return history_->radiance[current_]; }
+  void forget();
+
+  std::size_t gpuBytes() const;
+
+ private:
+  struct History {
+    std::array<gl::Texture, 2> radiance, distance;  ///< of this frame and the one before
+    std::array<gl::Framebuffer, 2> targets;
+    const gl::Program* program;
+  };
+  void makeHistory();
+
+  gl::ProgramLibrary* programs_;
+  glm::ivec2 size_{0};
+  int count_ = 0;
+  std::optional<gl::Texture> sum_;
+  std::optional<gl::Framebuffer> sumTarget_;
+  const gl::Program* scale_ = nullptr;
+  std::optional<History> history_;  ///< only where frames are shown one by one
+  std::size_t current_ = 0;
+  bool hasHistory_ = false;
+  glm::dmat4 clip_{1.0};
+};
+
+}  // namespace lucerna

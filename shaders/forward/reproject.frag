@@ -1,0 +1,98 @@
+// Adds a frame to the running mean of those before it (engine/forward/antialiasing.hpp).
+// In motion each pixel's surface, the nearest of the pixel's neighbourhood so that edges move with what is before them,
+// is looked for where the frame before showed it. The mean found there is limited to the new frame's own range around
+// the pixel: mean and kDeviations standard deviations of 3x3 pixels [Salvi2016], in colours compressed by brightness
+// [Karis2014], so that one bright sample does not flicker.
+#include "lib/clamped_int.glsl"
+layout(binding = 0) uniform sampler2D radianceTexture;
+layout(binding = 1) uniform sampler2D depthTexture;
+layout(binding = 2) uniform sampler2D beforeTexture;       // rgb; a: frames in it
+layout(binding = 3) uniform sampler2D distanceBeforeTexture;
+uniform mat4 beforeFromClip, beforeFromFar;  // from the frame's clip space; far: of what is infinitely far
+uniform vec4 inverseDistance;                // times a place in clip space: 1 over its distance along the view
+uniform vec2 offset;                         // of the frame's samples from pixels' centres, in pixels
+uniform int moves, starts;                   // the view differs from the frame before; there is none before
+uniform float most, exposure;
+layout(location = 0) out vec4 mean;
+layout(location = 1) out float nearestDistance;  // of 3x3 pixels
+
+const float kDeviations = 1.25;
+const float kMostInMotion = 10.0;
+const float kInfinite = 1e30;
+const float kFarther = 1.02;  // beyond this ratio of distances it is another surface
+
+vec3 compressed(vec3 c) {
+  c *= exposure;
+  return c / (1.0 + max(c.r, max(c.g, c.b)));
+}
+vec3 expanded(vec3 c) { return c / (max(1.0 - max(c.r, max(c.g, c.b)), 1e-4) * exposure); }
+
+// Catmull-Rom over 4x4 texels by nine bilinear taps, of which the corners, with hardly any weight, are left out
+// [Jimenez2016]. Compressed.
+vec3 before(vec2 uv) { return textureLod(beforeTexture, uv, 0.0).rgb; }
+vec3 cubic(vec2 uv) {
+  vec2 size = vec2(textureSize(beforeTexture, 0)), place = uv * size, middle = floor(place - 0.5) + 0.5,
+       f = place - middle;
+  vec2 w0 = f * (-0.5 + f * (1.0 - 0.5 * f)), w1 = 1.0 + f * f * (-2.5 + 1.5 * f),
+       w2 = f * (0.5 + f * (2.0 - 1.5 * f)), w3 = f * f * (-0.5 + 0.5 * f), w12 = w1 + w2;
+  vec2 at0 = (middle - 1.0) / size, at12 = (middle + w2 / w12) / size, at3 = (middle + 2.0) / size;
+  vec3 sum = w12.x * w12.y * compressed(before(at12)) +
+             w12.x * w0.y * compressed(before(vec2(at12.x, at0.y))) +
+             w0.x * w12.y * compressed(before(vec2(at0.x, at12.y))) +
+             w3.x * w12.y * compressed(before(vec2(at3.x, at12.y))) +
+             w12.x * w3.y * compressed(before(vec2(at12.x, at3.y)));
+  float weights = w12.x * w12.y + w12.x * (w0.y + w3.y) + w12.y * (w0.x + w3.x);
+  return max(sum / weights, vec3(0.0));
+}
+
+void main() {
+  ivec2 pixel = ivec2(gl_FragCoord.xy), last = textureSize(radianceTexture, 0) - 1;
+  vec3 radiance = texelFetch(radianceTexture, pixel, 0).rgb;
+  vec2 size = vec2(last + 1);
+
+  // The nearest surface around, and the range of distances and colours.
+  vec4 nearest = vec4(0.0, 0.0, 1.0, 1.0);
+  float inverseLeast = 0.0, inverseMost = kInfinite;
+  vec3 sum = vec3(0.0), squares = vec3(0.0);
+  for (int y = -1; y <= 1; ++y)
+    for (int x = -1; x <= 1; ++x) {
+      ivec2 place = clamp(pixel + ivec2(x, y), ivec2(0), last);
+      float depth = texelFetch(depthTexture, place, 0).r;
+      vec4 clip = vec4(2.0 * (vec2(place) + 0.5) / size - 1.0, 2.0 * depth - 1.0, 1.0);
+      float inverse = depth < 1.0 ? dot(inverseDistance, clip) : 0.0;
+      if (inverse > inverseLeast) {
+        inverseLeast = inverse;
+        nearest = clip;
+      }
+      inverseMost = min(inverseMost, inverse);
+      vec3 c = compressed(texelFetch(radianceTexture, place, 0).rgb);
+      sum += c;
+      squares += c * c;
+    }
+  bool isFar = inverseLeast == 0.0;
+  if (isFar) nearest.xy = 2.0 * gl_FragCoord.xy / size - 1.0;
+  nearestDistance = isFar ? kInfinite : 1.0 / inverseLeast;
+  mean = vec4(radiance, 1.0);
+  if (starts != 0) return;
+  if (moves == 0) {
+    vec4 old = texelFetch(beforeTexture, pixel, 0);
+    float count = min(old.a + 1.0, most);
+    mean = vec4(mix(old.rgb, radiance, 1.0 / count), count);
+    return;
+  }
+
+  vec4 place = isFar ? beforeFromFar * nearest : beforeFromClip * nearest;
+  vec2 uv = gl_FragCoord.xy / size + 0.5 * (place.xy / place.w - nearest.xy) - offset / size;
+  if (!(place.w > 0.0) || any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return;
+  ivec2 pixelBefore = clampedInt(uv * size, ivec2(0), last);
+  // Hidden before by something nearer, by more than the surface itself varies around the pixel?
+  float distance = isFar ? kInfinite : place.w / inverseLeast,
+        spread = isFar || inverseMost == 0.0 ? 0.0 : 1.0 / inverseMost - nearestDistance;
+  if (distance > kFarther * texelFetch(distanceBeforeTexture, pixelBefore, 0).r + spread) return;
+  vec3 middle = sum / 9.0, range = kDeviations * sqrt(max(squares / 9.0 - middle * middle, vec3(0.0)));
+  vec3 old = cubic(uv), away = old - middle;
+  vec3 ratios = abs(away) / max(range, vec3(1e-6));
+  old = middle + away / max(1.0, max(ratios.r, max(ratios.g, ratios.b)));
+  float count = min(texelFetch(beforeTexture, pixelBefore, 0).a + 1.0, kMostInMotion);
+  mean = vec4(expanded(mix(old, compressed(radiance), 1.0 / count)), count);
+}

@@ -1,0 +1,69 @@
+// Which lights reach the surface at a point of each pixel: one bit a light, the sun's first where there is one, then
+// the lamps'. One ray goes to each light, to a point of its disc or ball that differs from pixel to pixel and from
+// sample to sample, so that the mean of a pixel's samples is the visible share. A pixel with one sample looks at the
+// middle.
+layout(local_size_x = 8, local_size_y = 8) in;
+#include "shared/bindings.h"
+#include "shared/lights.h"
+#include "shared/path_tracer.h"
+layout(std140, binding = BLOCK_CACHE_PATHS) uniform PathBlock { PathConstants tracer; };
+#include "rays/random.glsl"
+#include "rays/bsdf.glsl"
+#include "rays/materials.glsl"
+#include "rays/bvh.glsl"
+#include "rays/view.glsl"
+#include "lib/round_light.glsl"
+#if WIDE
+layout(binding = 0, rgba32ui) writeonly restrict uniform uimage2D visibleLights;
+#else
+layout(binding = 0, r32ui) writeonly restrict uniform uimage2D visibleLights;
+#endif
+#if LAMPS
+layout(std430, binding = PLAIN_LAMPS_BINDING) readonly restrict buffer PlainLampBlock { PlainLamp lamps[]; };
+#endif
+uniform vec3 drawnOrigin;  // of lamps' positions, in the ray caster's coordinates
+uniform vec3 sunDirection;
+uniform float sunLessCosine;  // 1 - cosine of half its diameter
+uniform ivec2 firstPixel;
+uniform int pixelSample;  // its number; below 0: the only one
+
+void main() {
+  ivec2 pixel = firstPixel + ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(pixel, tracer.picture.xy))) return;
+  uvec4 reached = uvec4(0u);
+  Ray view = Ray(vec3(0.0), 0.0, vec3(0.0), 3e38);
+  viewRay(vec2(pixel) + 0.5, view.origin, view.direction);
+  Hit hit = closestHit(view, kNoHit);
+  if (hit.triangle != kNoHit) {
+    Surface surface = surfaceAt(hit.triangle, hit.barycentrics, view.direction);
+    vec3 start = offsetRay(surface.position, surface.geometricNormal, surface.magnitude);
+    PathNumbers numbers = PathNumbers(uint(pixel.y * tracer.picture.x + pixel.x), uint(max(pixelSample, 0)), 0u);
+    int count = SUN_RAYS + LAMPS;
+    for (int i = 0; i < count; ++i) {
+      vec2 xi = pixelSample < 0 ? vec2(0.0) : randomPair(numbers, 0u, kFreePurpose + uint(i));
+      Ray ray;
+      bool faces;
+#if SUN_RAYS
+      if (i == 0) {
+        ray = Ray(start, 0.0, coneSample(-sunDirection, sunLessCosine, xi), 3e38);
+        faces = dot(ray.direction, surface.geometricNormal) > 0.0;
+        if (faces && !anyHit(ray, hit.triangle)) reached.x |= 1u;
+        continue;
+      }
+#endif
+#if LAMPS
+      PlainLamp lamp = lamps[i - SUN_RAYS];
+      vec3 away = lamp.position + drawnOrigin - start;
+      float distance2 = max(dot(away, away), 1e-30);
+      if (lamp.radius > 0.0) {
+        vec3 direction =
+            coneSample(away * inversesqrt(distance2), ballLessCosine(lamp.radius, distance2), xi);
+        away = direction * distanceToBall(away, lamp.radius, direction);
+      }
+      faces = dot(away, surface.geometricNormal) > 0.0;
+      if (faces && !anyHitToLamp(Ray(start, 0.0, away, 1.0), hit.triangle)) reached[i >> 5] |= 1u << (i & 31);
+#endif
+    }
+  }
+  imageStore(visibleLights, pixel, reached);
+}

@@ -1,0 +1,164 @@
+// What a pixel shows of edges: the filter's share of each side, in the path tracer and in added up frames, at rest and
+// while the view moves.
+#include "base/pixel_filter.hpp"
+#include "pathtracer/path_tracer.hpp"
+#include "render/renderer.hpp"
+#include "support/gl_fixture.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+namespace lucerna {
+namespace {
+
+constexpr int kPicture = 16;
+
+/// A shining rectangle from x = edge to the right, across the view; the picture is kPicture units wide and high.
+struct EdgeScene : Scene {
+  explicit EdgeScene(double edge, float behind = 0.0f) {
+    materials.resize(1);
+    materials[0].diffuse = glm::vec3(0.0f);
+    materials[0].emission = glm::vec3(1.0f);
+    background = glm::vec3(behind);
+    meshes.resize(1);
+    const double h = 2.0 * kPicture;
+    for (const glm::dvec3& p : {glm::dvec3(edge, -h, 0), glm::dvec3(edge + 3 * h, -h, 0),
+                                glm::dvec3(edge + 3 * h, h, 0), glm::dvec3(edge, h, 0)}) {
+      vertices.push_back({glm::vec3(p), {}, {0, 0, 1}});
+      bounds.add(p);
+    }
+    indices = {0, 1, 2, 0, 2, 3};
+    meshes[0].indexCount = 6;
+    meshes[0].bounds = bounds;
+    cameras = {view(0.0)};
+  }
+  static Camera view(double x, bool orthographic = true) {
+    Camera camera;
+    camera.position = {x, 0.0, 10.0};
+    camera.direction = {0.0, 0.0, -1.0};
+    if (orthographic) camera.orthographicHeight = kPicture;
+    else camera.verticalFov = 2.0 * std::atan(0.05 * kPicture);
+    return camera;
+  }
+};
+
+RenderSettings settingsFor(int samples, PixelFilter filter = PixelFilter::box) {
+  RenderSettings s;
+  s.technique = "direct";
+  s.size = {kPicture, kPicture};
+  s.fullFloatTarget = true;
+  s.pixelSamples = samples;
+  s.filter = filter;
+  return s;
+}
+
+/// The filter's share on the right of a place, in pixels from the pixel's centre.
+double shareRightOf(PixelFilter filter, double place) {
+  constexpr int kSteps = 4000;
+  double sum = 0.0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double x = -2.0 + 4.0 * (i + 0.5) / kSteps;
+    if (x > place) sum += 4.0 / kSteps * filterDensity(filter, x);
+  }
+  return sum;
+}
+
+class AntialiasingGl : public test::GlTest {
+ protected:
+  Image frames(const Scene& scene, const RenderSettings& settings) {
+    Renderer renderer(context(), programs(), scene, settings);
+    renderer.renderToTheEnd(scene.cameras.front());
+    return renderer.readRadiance();
+  }
+};
+
+TEST_F(AntialiasingGl, PixelsShowTheFiltersShareOfAnEdge) {
+  for (const PixelFilter filter : {PixelFilter::box, PixelFilter::gaussian, PixelFilter::blackmanHarris})
+    for (const double edge : {0.0, 0.3, 0.62}) {
+      const EdgeScene scene(edge);
+      const Image added = frames(scene, settingsFor(1024, filter));
+      PathTracer::Settings paths;
+      paths.size = {kPicture, kPicture};
+      paths.filter = filter;
+      PathTracer tracer(context(), programs(), scene, paths);
+      tracer.setCamera(scene.cameras.front());
+      tracer.record(1024);
+      const Image traced = tracer.mean();
+      for (int x = kPicture / 2 - 3; x < kPicture / 2 + 3; ++x) {
+        const double right = shareRightOf(filter, edge - (x + 0.5 - 0.5 * kPicture));
+        EXPECT_NEAR(added.at(x, 5).x, right, 0.004) << nameOf(filter) << " " << edge << " " << x;
+        EXPECT_NEAR(traced.at(x, 5).x, right, 0.01) << nameOf(filter) << " " << edge << " " << x;
+      }
+    }
+}
+
+TEST_F(AntialiasingGl, ThroughCentresThereIsNoShare) {
+  const EdgeScene scene(0.3);
+  for (const int samples : {1, 16}) {
+    const Image image = frames(scene, settingsFor(samples, samples == 1 ? PixelFilter::box : PixelFilter::centre));
+    for (int x = 0; x < kPicture; ++x)
+      EXPECT_EQ(image.at(x, 5).x, x + 0.5 - 0.5 * kPicture > 0.3 ? 1.0f : 0.0f) << samples << " " << x;
+  }
+}
+
+TEST_F(AntialiasingGl, AViewAtRestEndsAtTheSameBitsOnEveryRun) {
+  const EdgeScene scene(0.3);
+  const RenderSettings settings = settingsFor(16);
+  const Image first = frames(scene, settings);
+  Renderer renderer(context(), programs(), scene, settings);
+  const Camera camera = EdgeScene::view(0.0, false);
+  renderer.render(EdgeScene::view(0.7));  // another view before
+  renderer.render(scene.cameras.front());
+  EXPECT_FALSE(renderer.isSettled());
+  int count = 1;
+  for (; !renderer.isSettled() && count < 100; ++count) renderer.render(scene.cameras.front());
+  EXPECT_LE(count, 17);
+  const Image second = renderer.readRadiance();
+  EXPECT_EQ(std::memcmp(first.pixels.data(), second.pixels.data(), first.pixels.size() * sizeof first.pixels[0]), 0);
+  renderer.render(scene.cameras.front());  // rests
+  const Image third = renderer.readRadiance();
+  EXPECT_EQ(std::memcmp(first.pixels.data(), third.pixels.data(), first.pixels.size() * sizeof first.pixels[0]), 0);
+}
+
+// An edge that moves by a fraction of a pixel in each frame: its share of a pixel is that of the present place.
+TEST_F(AntialiasingGl, InMotionAnEdgeIsSmoothAndWhereItIs) {
+  const EdgeScene scene(0.3, 0.25f);
+  for (const bool orthographic : {true, false}) {
+    double with = 0.0, without = 0.0;
+    for (const bool reprojection : {true, false}) {
+      RenderSettings settings = settingsFor(16);
+      settings.reprojection = reprojection;
+      Renderer renderer(context(), programs(), scene, settings);
+      double squares = 0.0;
+      constexpr int kFrames = 40;
+      for (int frame = 0; frame < kFrames; ++frame) {
+        const double at = -0.13 * frame;
+        renderer.render(EdgeScene::view(at, orthographic));
+        if (frame < 12) continue;
+        const Image image = renderer.readRadiance();
+        for (int x = 0; x < kPicture; ++x) {
+          const double right = 0.25 + 0.75 * shareRightOf(PixelFilter::box, 0.3 - at - (x + 0.5 - 0.5 * kPicture));
+          squares += std::pow(image.at(x, 5).x - right, 2.0) / kFrames;
+        }
+      }
+      (reprojection ? with : without) = std::sqrt(squares);
+    }
+    std::printf("edge in motion, %s: error %.3f, each frame alone %.3f\n",
+                orthographic ? "orthographic" : "perspective", with, without);
+    EXPECT_LT(with, 0.6 * without) << orthographic;
+  }
+}
+
+TEST_F(AntialiasingGl, WhatHasLeftIsNoGhost) {
+  // The edge leaves the picture at once: its light goes with it.
+  const EdgeScene scene(0.3);
+  Renderer renderer(context(), programs(), scene, settingsFor(16));
+  for (int frame = 0; frame < 8; ++frame) renderer.render(EdgeScene::view(0.01 * frame));
+  renderer.render(EdgeScene::view(-kPicture));
+  for (const glm::vec3& pixel : renderer.readRadiance().pixels) EXPECT_EQ(pixel, glm::vec3(0.0f));
+}
+
+}  // namespace
+}  // namespace lucerna

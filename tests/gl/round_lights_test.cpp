@@ -1,0 +1,166 @@
+// Lights with a size: the sun's disc and lamps' balls against closed forms, in the path tracer and by shadow rays; and
+// shadow rays against maps where a light has no size.
+#include "base/angles.hpp"
+#include "pathtracer/path_tracer.hpp"
+#include "render/renderer.hpp"
+#include "support/gl_fixture.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace lucerna {
+namespace {
+
+constexpr int kWidth = 32, kHeight = 2;
+constexpr double kLength = 4.0;  ///< of the picture along x, scene units
+
+/// A white floor of y = 0, seen from below the blocker, which covers x < 0 at y = 2.
+struct FloorScene : Scene {
+  explicit FloorScene(bool blocked) {
+    materials.resize(1);
+    materials[0].diffuse = glm::vec3(1.0f);
+    meshes.resize(1);
+    add(0.0, -50.0, 50.0);
+    if (blocked) add(2.0, -50.0, 0.0);
+    meshes[0].indexCount = static_cast<std::uint32_t>(indices.size());
+    meshes[0].bounds = bounds;
+    Camera camera;
+    camera.position = {0.0, 1.0, 0.0};
+    camera.direction = {0.0, -1.0, 0.0};
+    camera.up = {0.0, 0.0, -1.0};
+    camera.orthographicHeight = kLength * kHeight / kWidth;
+    cameras = {camera};
+  }
+  void add(double y, double from, double to) {
+    const auto first = static_cast<std::uint32_t>(vertices.size());
+    for (const glm::dvec3& p :
+         {glm::dvec3(from, y, 50), glm::dvec3(to, y, 50), glm::dvec3(to, y, -50), glm::dvec3(from, y, -50)}) {
+      vertices.push_back({glm::vec3(p), {}, {0, 1, 0}});
+      bounds.add(p);
+    }
+    for (const std::uint32_t i : {0u, 1u, 2u, 0u, 2u, 3u}) indices.push_back(first + i);
+  }
+};
+
+double placeOf(int x) { return kLength * ((x + 0.5) / kWidth - 0.5); }
+
+class RoundLights : public test::GlTest {
+ protected:
+  Image traced(const Scene& scene, std::uint32_t samples = 4096) {
+    PathTracer::Settings settings;
+    settings.size = {kWidth, kHeight};
+    settings.transport = Transport::direct;
+    settings.filter = PixelFilter::centre;
+    PathTracer tracer(context(), programs(), scene, settings);
+    tracer.setCamera(scene.cameras.front());
+    tracer.record(samples);
+    return tracer.mean();
+  }
+  Image drawn(const Scene& scene, ShadowTransport shadows, int samples) {
+    RenderSettings settings;
+    settings.technique = "direct";
+    settings.size = {kWidth, kHeight};
+    settings.fullFloatTarget = true;
+    settings.pixelSamples = samples;
+    settings.filter = PixelFilter::centre;
+    settings.shadows = shadows;
+    Renderer renderer(context(), programs(), scene, settings);
+    renderer.renderToTheEnd(scene.cameras.front());
+    return renderer.readRadiance();
+  }
+};
+
+/// The share of a disc beyond a line at `place` radii from its centre.
+double shareOfDisc(double place) {
+  const double u = std::clamp(place, -1.0, 1.0);
+  return 0.5 + (u * std::sqrt(1.0 - u * u) + std::asin(u)) / kPi;
+}
+
+TEST_F(RoundLights, ThePenumbraOfASunIsTheShareOfItsDisc) {
+  FloorScene scene(true);
+  for (const double degrees : {0.53, 20.0}) {
+    scene.sun = DirectionalLight{{0.0, -1.0, 0.0}, glm::vec3(static_cast<float>(kPi)), degrees * kDegree};
+    const double radius = 2.0 * std::tan(0.5 * degrees * kDegree);
+    for (const bool isTraced : {true, false}) {
+      const Image image = isTraced ? traced(scene) : drawn(scene, ShadowTransport::rays, 256);
+      double worst = 0.0;
+      for (int x = 0; x < kWidth; ++x)
+        worst = std::max(worst, std::abs(image.at(x, 0).x - shareOfDisc(placeOf(x) / radius)));
+      std::printf("penumbra of %g degrees, %s: at most %.4f off\n", degrees, isTraced ? "paths" : "shadow rays", worst);
+      EXPECT_LT(worst, 0.03) << degrees << isTraced;
+    }
+  }
+}
+
+TEST_F(RoundLights, AnUnblockedBallShinesAsItsCentre) {
+  FloorScene scene(false);
+  for (const double radius : {0.0, 0.1, 0.9}) {
+    for (const bool isSpot : {false, true}) {
+      scene.points.clear();
+      scene.spots.clear();
+      const glm::dvec3 place(0.3, 1.5, 0.0);
+      if (isSpot) scene.spots = {SpotLight{place, {0, -1, 0}, glm::vec3(2.0f), 1.39, 1.39, radius}};
+      else scene.points = {PointLight{place, glm::vec3(2.0f), radius}};
+      const Image paths = traced(scene), rays = drawn(scene, ShadowTransport::rays, 16);
+      for (int x = 0; x < kWidth; ++x) {
+        const double away = placeOf(x) - 0.3, beside = 0.5 * kLength / kWidth,
+                     distance2 = away * away + 1.5 * 1.5 + beside * beside,
+                     right = 2.0 / kPi * 1.5 / std::pow(distance2, 1.5);
+        EXPECT_NEAR(paths.at(x, 0).x / right, 1.0, 0.02) << radius << isSpot << " " << x;
+        EXPECT_NEAR(rays.at(x, 0).x / right, 1.0, 2e-3) << radius << isSpot << " " << x;
+      }
+    }
+  }
+}
+
+TEST_F(RoundLights, BesideAnEdgeBelowItsCentreHalfABallIsSeen) {
+  FloorScene scene(true);
+  scene.points = {PointLight{{0.0, 4.0, 0.0}, glm::vec3(16.0f), 0.5}};
+  const double half = 0.5 / kPi;  // of 16 / 4^2, over pi
+  for (const bool isTraced : {true, false}) {
+    const Image image = isTraced ? traced(scene) : drawn(scene, ShadowTransport::rays, 256);
+    EXPECT_NEAR((image.at(kWidth / 2 - 1, 0).x + image.at(kWidth / 2, 0).x) / 2.0, half, 0.02 * half) << isTraced;
+    // The ball's rims at x = -0.5 and 0.5, seen past the edge at half the height: shadow from -1/2 on, light from 1/2.
+    EXPECT_EQ(image.at(0, 0).x, 0.0f);
+    EXPECT_NEAR(image.at(kWidth - 1, 0).x * kPi, std::pow(1.0 + std::pow(placeOf(kWidth - 1) / 4.0, 2.0), -1.5), 0.02);
+  }
+}
+
+TEST_F(RoundLights, LightsWithoutASizeHaveTheShadowsOfMaps) {
+  FloorScene scene(true);
+  scene.sun = DirectionalLight{glm::normalize(glm::dvec3(0.1, -1.0, 0.0)), glm::vec3(1.0f)};
+  scene.spots = {SpotLight{{0.5, 3.0, 0.2}, {0, -1, 0}, glm::vec3(3.0f, 1.0f, 1.0f), 0.9, 1.2}};
+  scene.points = {PointLight{{-0.4, 1.2, 0.3}, glm::vec3(0.0f, 0.0f, 1.0f)}};
+  for (int kind = 0; kind < 3; ++kind) {  // each alone, without the noise of choosing among them
+    FloorScene one = scene;
+    if (kind != 0) one.sun.reset();
+    if (kind != 1) one.spots.clear();
+    if (kind != 2) one.points.clear();
+    const Image maps = drawn(one, ShadowTransport::map, 1), rays = drawn(one, ShadowTransport::rays, 1),
+                paths = traced(one, 4);
+    int alike = 0;
+    for (int x = 0; x < kWidth; ++x) {
+      EXPECT_LT(glm::length(rays.at(x, 0) - paths.at(x, 0)), 1e-4f * glm::length(paths.at(x, 0)) + 1e-7f)
+          << kind << " " << x;
+      alike += glm::length(rays.at(x, 0) - maps.at(x, 0)) < 0.01f * glm::length(maps.at(x, 0)) + 1e-6f;
+    }
+    EXPECT_GE(alike, kWidth - 3) << kind;  // but for the maps' filter, at the edge
+  }
+}
+
+TEST_F(RoundLights, ManyLampsHaveShadows) {
+  FloorScene scene(true);
+  for (int i = 0; i < 140; ++i) scene.points.push_back({{-0.3 - 0.001 * i, 3.0, 0.0}, glm::vec3(1.0f)});
+  const Image rays = drawn(scene, ShadowTransport::rays, 1), paths = traced(scene, 2048);
+  // 63 of 140 have shadows; the others shine through.
+  const double lit = paths.at(kWidth - 1, 0).x, through = rays.at(0, 0).x / rays.at(kWidth - 1, 0).x;
+  EXPECT_NEAR(rays.at(kWidth - 1, 0).x / lit, 1.0, 0.03);
+  EXPECT_EQ(paths.at(0, 0).x, 0.0f);
+  EXPECT_LT(through, 0.75);
+}
+
+}  // namespace
+}  // namespace lucerna
