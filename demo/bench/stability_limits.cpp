@@ -210,6 +210,17 @@ void addLimitCases(std::vector<StabilityCase>& cases) {
                      return Measurement{1.0, std::min(limitsPath(c, thin, 4, 1).relativeError, 1e9), 0.0,
                                         Rule::atLeast};
                    }});
+  cases.push_back({"radiosity", "a sky of one bright texel over a floor", "64 x 32", [](const StabilityContext& c) {
+                     SceneParts parts("texel");
+                     parts.plate({0, 0, 0}, {0, 0, 2}, {2, 0, 0}, parts.material(glm::vec3(0.5f)));
+                     Environment sky{glm::vec3(1.0f), Image(64, 32), 0.0};
+                     sky.picture->at(20, 7) = glm::vec3(1000.0f);
+                     parts.scene().environment = sky;
+                     parts.scene().cameras.push_back(limitsCamera({0, 1, 0}, {0, 0, 0}, 0.9));
+                     const double top = std::cos(kPi * 7 / 32), bottom = std::cos(kPi * 8 / 32);
+                     const double expected = 0.5 * 1000.0 / 64.0 * (top * top - bottom * bottom);
+                     return Measurement{expected, limitsPicture(c, parts.scene(), "radiosity", 0.5), 0.01 * expected};
+                   }});
 }
 
 }  // namespace lucerna::demo::bench

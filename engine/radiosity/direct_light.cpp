@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <optional>
 
 namespace lucerna {
 
@@ -41,16 +43,63 @@ std::vector<Arrival> arrivals(const Scene& scene, const glm::dvec3& point, doubl
   return result;
 }
 
-/// Radiance of the texel that contains a direction, as paths see it (shaders/rays/environment.glsl).
-glm::dvec3 radianceOf(const Environment& environment, const glm::dvec3& direction) {
-  if (!environment.picture) return glm::dvec3(environment.radiance);
+/// The texel of an environment's picture that contains a direction, as paths see it (shaders/rays/environment.glsl).
+glm::dvec3 texelOf(const Environment& environment, const glm::dvec3& direction) {
   const Image& picture = *environment.picture;
   const double rotations = 0.5 + (std::atan2(direction.x, -direction.z) + environment.rotation) / (2.0 * kPi);
   const double v = std::acos(std::clamp(direction.y, -1.0, 1.0)) / kPi;
   const int x = std::min(static_cast<int>((rotations - std::floor(rotations)) * picture.width), picture.width - 1);
   const int y = std::min(static_cast<int>(v * picture.height), picture.height - 1);
-  return glm::dvec3(environment.radiance) * glm::dvec3(picture.at(x, y));
+  return glm::dvec3(picture.at(x, y));
 }
+
+/// The texels of an environment's picture that are much brighter than its mean. Rays that go everywhere leave them out;
+/// others go to them alone, in proportion to what each gives.
+class BrightTexels {
+ public:
+  explicit BrightTexels(const Environment& environment) : environment_(environment) {
+    const Image& picture = *environment.picture;
+    double sum = 0.0;
+    eachTexel([&](int x, int y) { sum += brightness(glm::dvec3(picture.at(x, y))) * solidAngle(y); });
+    limit_ = kLimit * sum / (4.0 * kPi);
+    eachTexel([&](int x, int y) {
+      const glm::dvec3 texel(picture.at(x, y));
+      if (holds(texel)) all_ += brightness(texel) * solidAngle(y);
+      sums_.push_back(all_);
+    });
+  }
+  bool empty() const { return all_ <= 0.0; }
+  bool holds(const glm::dvec3& texel) const { return brightness(texel) > limit_; }
+  /// Numbers from 0 to 1 choose a texel and a place in it. Returns the direction there and the irradiance across it,
+  /// without Environment::radiance, whose mean over such directions is that of all these texels.
+  Arrival sample(double which, double across, double down) const {
+    const Image& picture = *environment_.picture;
+    const auto found = std::upper_bound(sums_.begin(), sums_.end() - 1, which * all_) - sums_.begin();
+    const int x = static_cast<int>(found % picture.width), y = static_cast<int>(found / picture.width);
+    const double azimuth = 2.0 * kPi * ((x + across) / picture.width - 0.5) - environment_.rotation;
+    const double top = std::cos(kPi * y / picture.height), bottom = std::cos(kPi * (y + 1) / picture.height);
+    const double height = top + down * (bottom - top), radius = std::sqrt(std::max(1.0 - height * height, 0.0));
+    const glm::dvec3 texel(picture.at(x, y));
+    return {{radius * std::sin(azimuth), height, -radius * std::cos(azimuth)}, texel * (all_ / brightness(texel))};
+  }
+
+ private:
+  static constexpr double kLimit = 4.0;  ///< of the mean
+
+  static double brightness(const glm::dvec3& c) { return std::max({c.x, c.y, c.z}); }
+  double solidAngle(int y) const {
+    const Image& picture = *environment_.picture;
+    return 2.0 * kPi / picture.width * (std::cos(kPi * y / picture.height) - std::cos(kPi * (y + 1) / picture.height));
+  }
+  void eachTexel(const std::function<void(int x, int y)>& visit) const {
+    for (int y = 0; y < environment_.picture->height; ++y)
+      for (int x = 0; x < environment_.picture->width; ++x) visit(x, y);
+  }
+
+  const Environment& environment_;
+  double limit_ = 0.0, all_ = 0.0;
+  std::vector<double> sums_;  ///< of what the bright texels up to each give, row by row
+};
 
 /// Traces visibility rays, in submissions of limited size.
 class ShadowRays {
@@ -153,41 +202,64 @@ std::vector<glm::dvec3> skyLight(gl::ProgramLibrary& programs, const RayScene& r
                                  const RadiosityMesh& mesh, std::size_t most) {
   constexpr double kPlastic = 0.75487766624669276;  // 1 / the plastic number: with its square the steps of a lattice in
                                                     // two more dimensions, angle and point
+  constexpr double kGolden = 0.61803398874989485;
+  const auto fraction = [](double x) { return x - std::floor(x); };
   std::vector<glm::dvec3> irradiance(mesh.patches.size(), glm::dvec3(0.0));
   const std::size_t raysOfPatch =
       std::clamp<std::size_t>(most / std::max<std::size_t>(mesh.patches.size(), 1), 64, 1024);
   const double beyond = 4.0 * mesh.extent;
   const std::vector<glm::dvec2> centroids = partCentroids(4);
   const ShadowRays shadowRays(programs, rays);
+  const Environment& environment = *scene.environment;
+  const glm::dvec3 factor(environment.radiance);
+  std::optional<BrightTexels> bright;
+  if (environment.picture) bright.emplace(environment);
+  const std::size_t toTexels = bright && !bright->empty() ? raysOfPatch / 2 : 0, toAll = raysOfPatch - toTexels;
   for (std::size_t first = 0; first < mesh.patches.size(); first += ShadowRays::kEach / raysOfPatch) {
     const std::size_t end = std::min(first + ShadowRays::kEach / raysOfPatch, mesh.patches.size());
     std::vector<Ray> batch;
-    std::vector<glm::dvec3> radiance;
+    std::vector<glm::dvec3> carried;  // irradiance
     for (std::size_t p = first; p < end; ++p) {
       const Patch& patch = mesh.patches[p];
       const glm::vec4 face = faceOf(mesh, patch, rays.origin());
       const std::vector<glm::dvec3> points = pointsOf(mesh, patch, centroids);
+      const auto add = [&](std::size_t k, const glm::dvec3& direction, const glm::dvec3& irradianceOfRay) {
+        if (irradianceOfRay == glm::dvec3(0.0)) return;
+        const double which = fraction(kPlastic * kPlastic * static_cast<double>(k));
+        const glm::dvec3& point = points[static_cast<std::size_t>(which * static_cast<double>(points.size()))];
+        batch.push_back({glm::vec4(glm::vec3(point - rays.origin()), static_cast<float>(p)),
+                         glm::vec4(glm::vec3(beyond * direction), 0.0f), face});
+        carried.push_back(irradianceOfRay);
+      };
       const glm::dvec3 n = patch.faceNormal,
                        u = glm::normalize(std::abs(n.x) < 0.5 ? glm::cross(n, glm::dvec3(1, 0, 0))
                                                               : glm::cross(n, glm::dvec3(0, 1, 0))),
                        v = glm::cross(n, u);
-      for (std::size_t k = 0; k < raysOfPatch; ++k) {
+      for (std::size_t k = 0; k < toAll; ++k) {
         // Uniform points on the unit disc are cosine-distributed on the hemisphere above it. Each patch turns them.
-        const double r2 = (static_cast<double>(k) + 0.5) / static_cast<double>(raysOfPatch),
+        const double r2 = (static_cast<double>(k) + 0.5) / static_cast<double>(toAll),
                      angle = 2.0 * kPi * kPlastic * static_cast<double>(k + p);
-        const double which = kPlastic * kPlastic * static_cast<double>(k);
-        const glm::dvec3& point =
-            points[static_cast<std::size_t>((which - std::floor(which)) * static_cast<double>(points.size()))];
         const glm::dvec3 direction =
             std::sqrt(r2) * (std::cos(angle) * u + std::sin(angle) * v) + std::sqrt(1.0 - r2) * n;
-        batch.push_back({glm::vec4(glm::vec3(point - rays.origin()), static_cast<float>(p)),
-                         glm::vec4(glm::vec3(beyond * direction), 0.0f), face});
-        radiance.push_back(radianceOf(*scene.environment, direction));
+        glm::dvec3 radiance(1.0);
+        if (bright) {
+          const glm::dvec3 texel = texelOf(environment, direction);
+          radiance = bright->holds(texel) ? glm::dvec3(0.0) : texel;
+        }
+        add(k, direction, factor * radiance * (kPi / static_cast<double>(toAll)));
+      }
+      for (std::size_t k = 0; k < toTexels; ++k) {
+        const double turn = kGolden * static_cast<double>(p), step = static_cast<double>(k);
+        const Arrival arrival = bright->sample((step + fraction(turn)) / static_cast<double>(toTexels),
+                                               fraction(kPlastic * step + turn), fraction(kGolden * step + turn));
+        add(k, arrival.toLight,
+            factor * arrival.irradiance *
+                (std::max(glm::dot(arrival.toLight, n), 0.0) / static_cast<double>(toTexels)));
       }
     }
     const std::vector<GLuint> flags = shadowRays.blocked(batch);
     for (std::size_t k = 0; k < batch.size(); ++k)
-      if (!flags[k]) irradiance[first + k / raysOfPatch] += kPi / static_cast<double>(raysOfPatch) * radiance[k];
+      if (!flags[k]) irradiance[static_cast<std::size_t>(batch[k].origin.w)] += carried[k];
   }
   return irradiance;
 }

@@ -19,8 +19,8 @@ std::vector<glm::dvec3> directLight(gl::ProgramLibrary& programs, const RayScene
 
 /// Irradiance of patches from Scene::environment, which must exist: pi times the mean radiance of rays that hit
 /// nothing, each ray from one of the patch's parts. 64 to 1024 rays per patch, about `most` in all; points of a regular
-/// lattice, so that a constant, unoccluded sky is exact. Light from a few bright texels of a picture is noisy: they are
-/// not sampled specially.
+/// lattice, so that a constant, unoccluded sky is exact. Texels of a picture that are brighter than four times its mean
+/// are left out by these rays; half of all rays go to them alone, in proportion to what each gives.
 std::vector<glm::dvec3> skyLight(gl::ProgramLibrary& programs, const RayScene& rays, const Scene& scene,
                                  const RadiosityMesh& mesh, std::size_t most = 5'000'000);
 

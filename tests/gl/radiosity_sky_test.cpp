@@ -80,6 +80,50 @@ TEST_F(RadiositySky, PicturesLightFromWhereTheyAre) {
   EXPECT_NEAR(share({1, 0, 0}, right), 0.5, 0.005);
 }
 
+/// Irradiance across a normal from a texel of radiance 1, by many directions.
+double fromTexel(const Image& picture, int x, int y, const glm::dvec3& normal) {
+  constexpr int kSteps = 256;
+  double sum = 0.0;
+  for (int i = 0; i < kSteps; ++i)
+    for (int j = 0; j < kSteps; ++j) {
+      const double azimuth = 2.0 * kPi * ((x + (i + 0.5) / kSteps) / picture.width - 0.5),
+                   polar = kPi * (y + (j + 0.5) / kSteps) / picture.height;
+      const glm::dvec3 to(std::sin(polar) * std::sin(azimuth), std::cos(polar), -std::sin(polar) * std::cos(azimuth));
+      sum += std::max(glm::dot(to, normal), 0.0) * std::sin(polar);
+    }
+  return sum * 2.0 * kPi / picture.width * kPi / picture.height / (kSteps * kSteps);
+}
+
+// Few rays of 1024 that go everywhere find a texel of 0.4 % of the sky: 20 % off.
+TEST_F(RadiositySky, ABrightTexelLightsAsItsSolidAngleSays) {
+  Environment sky{glm::vec3(0.5f, 1.0f, 2.0f), Image(32, 16), 0.0};
+  for (glm::vec3& texel : sky.picture->pixels) texel = glm::vec3(0.25f);
+  sky.picture->at(11, 7) = glm::vec3(2000.0f, 1000.0f, 500.0f);
+  for (const glm::dvec3& normal : {glm::dvec3(0, 1, 0), glm::dvec3(0, 0, -1), glm::dvec3(-1, 0, 0)}) {
+    const RadiositySolution s = solve(plate(normal, sky));
+    const double texel = fromTexel(*sky.picture, 11, 7, normal);
+    EXPECT_GT(texel, 1e-3);
+    for (const glm::dvec3& irradiance : s.irradiance)
+      for (int c = 0; c < 3; ++c) {
+        const double expected = static_cast<double>(sky.radiance[c]) *
+                                (0.25 * kPi + texel * static_cast<double>(sky.picture->at(11, 7)[c] - 0.25f));
+        EXPECT_NEAR(irradiance[c], expected, 0.005 * expected) << c;
+      }
+  }
+  // Behind a screen only the rest of the sky arrives.
+  SceneBuilder builder;
+  const int material = lambertian(builder, 0.0);
+  builder.plate({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, material);
+  const double azimuth = 2.0 * kPi * (11.5 / 32.0 - 0.5), polar = kPi * 7.5 / 16.0;
+  const glm::dvec3 to(std::sin(polar) * std::sin(azimuth), std::cos(polar), -std::sin(polar) * std::cos(azimuth)),
+      side = glm::normalize(glm::cross(to, glm::dvec3(0, 1, 0)));
+  builder.plate(20.0 * to, 8.0 * side, 8.0 * glm::cross(side, to), material);
+  builder.scene().environment = sky;
+  const double behind = solve(test::dark(builder.scene())).irradiance[0].y;
+  EXPECT_LT(behind, 0.26 * kPi);
+  EXPECT_GT(behind, 0.23 * kPi);
+}
+
 // Form factors of a unit cube's faces: 0.199825 to the one opposite, 0.200044 to each beside it.
 TEST_F(RadiositySky, ABoxWithAnOpenTopReceivesByItsFormFactors) {
   const int n = 4;
