@@ -221,6 +221,23 @@ void addLimitCases(std::vector<StabilityCase>& cases) {
                      const double expected = 0.5 * 1000.0 / 64.0 * (top * top - bottom * bottom);
                      return Measurement{expected, limitsPicture(c, parts.scene(), "radiosity", 0.5), 0.01 * expected};
                    }});
+  cases.push_back({"radiosity", "a lamp whose picture is one white texel of 3 x 3", "1.5 x 1.5, 0.4 above",
+                   [](const StabilityContext& c) {
+                     SceneParts parts("picture");
+                     parts.plate({0, 0, 0}, {0, 0, 2}, {2, 0, 0}, parts.material(glm::vec3(0.5f)));
+                     const int lamp = parts.material(glm::vec3(0.0f), glm::vec3(1.0f));
+                     Texture& texture = parts.scene().textures.emplace_back();
+                     texture.bitmap = {3, 3, std::vector<std::uint8_t>(36, 0)};
+                     for (std::size_t k = 16; k < 20; ++k) texture.bitmap.rgba[k] = 255;
+                     parts.materialAt(lamp).emissionTexture = 0;
+                     parts.materialAt(lamp).emissionScale = glm::vec3(1.0f);
+                     parts.plate({0, 0.4, 0}, {1.5, 0, 0}, {0, 0, 1.5}, lamp);
+                     Vertex* corners = &parts.scene().vertices.back() - 3;
+                     for (const int k : {0, 1, 2, 3}) corners[k].texCoord = {k == 1 || k == 2, k >= 2};
+                     parts.scene().cameras.push_back(limitsCamera({0, 0.2, 0}, {0, 0, 0}, 1e-3));
+                     const double expected = 0.5 * toRectangle(0.25, 0.25, 0.4);
+                     return Measurement{expected, limitsPicture(c, parts.scene(), "radiosity", 2.0), 1e-3 * expected};
+                   }});
 }
 
 }  // namespace lucerna::demo::bench

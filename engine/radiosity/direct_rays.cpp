@@ -1,10 +1,14 @@
 #include "radiosity/direct_rays.hpp"
 
+#include "base/angles.hpp"
 #include "gl/chunks.hpp"
 #include "radiosity/patches.hpp"
+#include "scene/texture_mean.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 
 namespace lucerna {
 
@@ -21,36 +25,115 @@ struct Light {
   glm::vec4 d;  ///< exitance; irradiance across the rays; radiant intensity
 };
 
-/// Emissive triangles as patches: oriented by their fronts, without those of zero area.
-std::vector<Patch> emittersOf(const Scene& scene, RadiosityMesh& mesh) {
-  std::vector<Patch> emitters;
+struct Corner {
+  glm::dvec3 position;
+  glm::dvec2 texCoord;
+};
+
+/// An emissive triangle, or a piece of one.
+struct Emitter {
+  std::array<Corner, 3> corners;  ///< counterclockwise seen from the front
+  glm::dvec3 exitance;
+  const Material* material;
+};
+
+using Polygon = std::vector<Corner>;  ///< convex
+
+/// Cuts polygons where a coordinate of the texture is `at`.
+std::vector<Polygon> cutAt(const std::vector<Polygon>& polygons, int axis, double at) {
+  std::vector<Polygon> pieces;
+  for (const Polygon& whole : polygons)
+    for (const double side : {-1.0, 1.0}) {
+      Polygon piece;
+      bool hasArea = false;
+      for (std::size_t k = 0; k < whole.size(); ++k) {
+        const Corner &from = whole[k], &to = whole[(k + 1) % whole.size()];
+        const double away = side * (from.texCoord[axis] - at), next = side * (to.texCoord[axis] - at);
+        hasArea = hasArea || away > 1e-9;
+        if (away >= 0.0) piece.push_back(from);
+        if (away * next >= 0.0) continue;
+        const double t = away / (away - next);
+        piece.push_back({glm::mix(from.position, to.position, t), glm::mix(from.texCoord, to.texCoord, t)});
+      }
+      if (hasArea) pieces.push_back(piece);
+    }
+  return pieces;
+}
+
+/// Cuts an emitter at every `step`th texel of its picture, and gives each piece the mean of its texels; black ones are
+/// left out. Nothing if there are more than `most`.
+std::optional<std::vector<Emitter>> cutByTexels(const Scene& scene, const Emitter& whole, double step,
+                                                std::size_t most) {
+  const Material& material = *whole.material;
+  if (material.emissionTexture < 0) return std::vector{whole};
+  const Bitmap& bitmap = scene.textures[static_cast<std::size_t>(material.emissionTexture)].bitmap;
+  std::vector<Polygon> polygons{{whole.corners.begin(), whole.corners.end()}};
+  for (const int axis : {0, 1}) {
+    const double size = step / (axis == 0 ? bitmap.width : bitmap.height);
+    const auto coordinate = [&](std::size_t k) { return whole.corners[k].texCoord[axis]; };
+    const auto [least, last] = std::minmax({coordinate(0), coordinate(1), coordinate(2)});
+    const double first = std::floor(least / size) + 1.0, count = std::ceil(last / size) - first;
+    if (count > static_cast<double>(most)) return std::nullopt;
+    for (double k = 0.0; k < count; k += 1.0) polygons = cutAt(polygons, axis, (first + k) * size);
+    if (polygons.size() > most) return std::nullopt;
+  }
+  std::vector<Emitter> pieces;
+  for (const Polygon& polygon : polygons)
+    for (std::size_t k = 2; k < polygon.size(); ++k) {
+      const std::array corners{polygon[0], polygon[k - 1], polygon[k]};
+      const auto uv = [&](std::size_t i) { return glm::vec2(corners[i].texCoord); };
+      const glm::dvec3 exitance = kPi * glm::dvec3(material.emissionScale) * meanTexture(bitmap, {uv(0), uv(1), uv(2)});
+      if (exitance != glm::dvec3(0.0)) pieces.push_back({corners, exitance, &material});
+    }
+  return pieces;
+}
+
+/// Emissive triangles, oriented by their fronts, without those of zero area. What shines by a picture is cut by texels
+/// or, where that makes more than DirectRays::kMostEmitters, by squares of 2, 4, .. texels.
+std::vector<Emitter> emittersOf(const Scene& scene) {
+  std::vector<Emitter> whole;
   if (std::none_of(scene.materials.begin(), scene.materials.end(),
                    [](const Material& m) { return m.emission != glm::vec3(0.0f); }))
-    return emitters;
-  mesh = makePatches(scene, {});
-  for (const Patch& patch : mesh.patches)
-    if (patch.emission != glm::dvec3(0.0)) emitters.push_back(patch);
-  return emitters;
+    return whole;
+  const RadiosityMesh mesh = makePatches(scene, {});
+  for (const Patch& patch : mesh.patches) {
+    if (patch.emission == glm::dvec3(0.0)) continue;
+    const auto corner = [&](std::size_t k) {
+      return Corner{mesh.points[patch.point[k]], glm::dvec2(patch.texCoord[k])};
+    };
+    whole.push_back({{corner(0), corner(1), corner(2)},
+                     patch.emission,
+                     &scene.materials[static_cast<std::size_t>(patch.material)]});
+  }
+  for (double step = 1.0; step < 1e6; step *= 2.0) {
+    std::vector<Emitter> pieces;
+    bool fits = true;
+    for (const Emitter& one : whole) {
+      const auto cut = cutByTexels(scene, one, step, DirectRays::kMostEmitters);
+      fits = fits && cut && pieces.size() + cut->size() <= DirectRays::kMostEmitters;
+      if (!fits) break;
+      pieces.insert(pieces.end(), cut->begin(), cut->end());
+    }
+    if (fits) return pieces;
+  }
+  return whole;
 }
 
 }  // namespace
 
-std::size_t DirectRays::emitterCount(const Scene& scene) {
-  RadiosityMesh mesh;
-  return emittersOf(scene, mesh).size();
-}
+std::size_t DirectRays::emitterCount(const Scene& scene) { return emittersOf(scene).size(); }
 
 DirectRays::DirectRays(const Scene& scene, const gl::Capabilities& capabilities, int rays,
                        const glm::dvec3& pixelOrigin)
     : rays_(scene, capabilities) {
-  RadiosityMesh mesh;
-  const std::vector<Patch> emitters = emittersOf(scene, mesh);
+  const std::vector<Emitter> emitters = emittersOf(scene);
   const glm::dvec3 origin = rays_.origin();
   const auto vec = [](const glm::dvec3& v, double w = 0.0) { return glm::vec4(glm::vec3(v), static_cast<float>(w)); };
   std::vector<Light> lights;
-  for (const Patch& patch : emitters) {
-    const auto c = mesh.corners(patch);
-    lights.push_back({vec(c[0] - origin, kTriangle), vec(c[1] - c[0]), vec(c[2] - c[0]), vec(patch.emission)});
+  for (const Emitter& emitter : emitters) {
+    const auto corner = [&](std::size_t k) { return emitter.corners[k].position; };
+    lights.push_back({vec(corner(0) - origin, kTriangle), vec(corner(1) - corner(0)), vec(corner(2) - corner(0)),
+                      vec(emitter.exitance)});
   }
   if (scene.sun) lights.push_back({vec(-scene.sun->direction, kSun), {}, {}, vec(glm::dvec3(scene.sun->irradiance))});
   for (const SpotLight& l : scene.spots)

@@ -2,7 +2,8 @@
 //
 // Input: a Scene. Output, to fragment shaders that include shaders/radiosity/direct_rays.glsl: irradiance from emissive
 // triangles (their closed form [Lambert1760] times their visible fraction, by rays), sun, spot and omnidirectional
-// lights (one ray each). Scene units.
+// lights (one ray each). Scene units. A triangle that shines by a picture is cut into the texels of it, or squares of
+// texels where there are too many, so that each piece has one emission.
 #pragma once
 
 #include "gl/objects.hpp"
@@ -13,9 +14,9 @@ namespace lucerna {
 
 class DirectRays {
  public:
-  /// Maximum number of emissive triangles: each costs rays in every pixel.
+  /// Maximum number of emissive triangles, or pieces of them: each costs rays in every pixel.
   static constexpr std::size_t kMostEmitters = 64;
-  static std::size_t emitterCount(const Scene& scene);
+  static std::size_t emitterCount(const Scene& scene);  ///< triangles, or pieces
 
   /// `rays`: per pixel, divided among the emissive triangles (at least one each). `origin`: of the pixels' positions,
   /// in the scene's coordinates.

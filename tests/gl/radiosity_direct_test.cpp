@@ -1,5 +1,6 @@
 // Direct light of a radiosity picture by shadow rays in each pixel: against closed forms where nothing is between,
 // against many rays in double where something is; and the parts of the picture add up.
+#include "radiosity/direct_rays.hpp"
 #include "radiosity/radiosity_view.hpp"
 #include "render/renderer.hpp"
 #include "support/form_factor_reference.hpp"
@@ -175,6 +176,58 @@ TEST_F(RadiosityDirect, TheSunsShadowIsSharpAndPartsAddUp) {
     }
   EXPECT_NEAR(patchMean / mean, 1.0, 0.1);
   EXPECT_GT(bounced, 0.005 * mean);
+}
+
+TEST_F(RadiosityDirect, APictureThatShinesLightsByItsTexels) {
+  // A lamp of 5 x 3 texels over a floor, against the closed form of each texel.
+  const int width = 5, height = 3, size = 24;
+  SceneBuilder builder;
+  const int grey = lambertian(builder, 0.5), lamp = lambertian(builder, 0.0, 1.0);
+  std::vector<std::uint8_t> bytes;
+  for (int i = 0; i < width * height; ++i)
+    for (const int byte : {i % 4 == 0 ? 255 : 0, i == 7 ? 255 : 40, 10 * i, 255})
+      bytes.push_back(static_cast<std::uint8_t>(byte));
+  builder.materialAt(lamp).emissionTexture = builder.texture(width, height, bytes);
+  builder.materialAt(lamp).emissionScale = glm::vec3(2.0f);
+  builder.plate({0, 0, 0}, {0, 0, 4}, {4, 0, 0}, grey);
+  const glm::dvec3 centre(0.1, 0.8, 0.2), u(2.0, 0, 0), v(0, 0, 1.5);
+  builder.plate(centre, u, v, lamp);
+  builder.scene().sun.reset();
+  const Camera camera = test::lookingAt({0.3, 0.5, 3.0}, {0, 0, 0}, 0.7);
+  const Image image = picture(builder.scene(), camera, Component::direct, RadiosityView::Direct::pixels, size);
+  int compared = 0;
+  for (int y = 0; y < size; ++y)
+    for (int x = 0; x < size; ++x) {
+      const glm::dvec3 d = rayOf(camera, x, y, size), p = camera.position - camera.position.y / d.y * d;
+      if (d.y >= 0.0 || std::max(std::abs(p.x), std::abs(p.z)) > 1.95) continue;
+      glm::dvec3 expected(0.0);
+      for (int row = 0; row < height; ++row)
+        for (int column = 0; column < width; ++column) {
+          const auto corner = [&](int i, int k) {
+            return centre + (static_cast<double>(column + i) / width - 0.5) * u +
+                   (0.5 - static_cast<double>(row + k) / height) * v;
+          };
+          const std::vector<glm::dvec3> texel{corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)};
+          for (int c = 0; c < 3; ++c)
+            expected[c] +=
+                2.0 * 0.5 * reference::pointToPolygon(p, {0, 1, 0}, texel) *
+                static_cast<double>(linearFromSrgb(
+                    static_cast<float>(bytes[static_cast<std::size_t>(4 * (row * width + column) + c)]) / 255.0f));
+        }
+      ++compared;
+      for (int c = 0; c < 3; ++c)
+        ASSERT_NEAR(image.at(x, y)[c], expected[c], 1e-5 + 1e-3 * expected[c]) << x << " " << y;
+    }
+  EXPECT_GT(compared, 200);
+  // More texels than pieces are allowed: squares of them.
+  std::vector<std::uint8_t> stripes;
+  for (int i = 0; i < 64 * 64; ++i)
+    for (const int byte : {(i & 1) != 0 ? 255 : 0, (i & 32) != 0 ? 255 : 0, 128, 255})
+      stripes.push_back(static_cast<std::uint8_t>(byte));
+  builder.materialAt(lamp).emissionTexture = builder.texture(64, 64, stripes);
+  const std::size_t pieces = DirectRays::emitterCount(builder.scene());
+  EXPECT_GT(pieces, 16u);
+  EXPECT_LE(pieces, DirectRays::kMostEmitters);
 }
 
 TEST_F(RadiosityDirect, NoBackShowsAtASilhouette) {
