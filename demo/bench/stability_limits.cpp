@@ -87,6 +87,10 @@ void addNeedles(std::vector<StabilityCase>& cases) {
     cases.push_back({"path", "a lamp as narrow as a needle over a floor", parameter, [=](const StabilityContext& c) {
                        return limitsWithin(limitsPath(c, needle(width, height), 1024, 1), expected);
                      }});
+    cases.push_back(
+        {"radiosity", "a lamp as narrow as a needle over a floor", parameter, [=](const StabilityContext& c) {
+           return Measurement{expected, limitsPicture(c, needle(width, height), "radiosity", 1.0), 1e-3 * expected};
+         }});
   }
 }
 

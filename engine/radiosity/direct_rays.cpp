@@ -19,7 +19,7 @@ constexpr GLuint kLightsBinding = 1;
 enum Kind : int { kTriangle = 0, kSun = 1, kSpot = 2, kPoint = 3 };
 
 struct Light {
-  glm::vec4 a;  ///< a corner; direction to the sun; position. w: kind
+  glm::vec4 a;  ///< a corner at the shortest edge; direction to the sun; position. w: kind
   glm::vec4 b;  ///< an edge; a spot's axis. w: cosine of a spot's inner angle
   glm::vec4 c;  ///< the other edge. w: cosine of a spot's outer angle
   glm::vec4 d;  ///< exitance; irradiance across the rays; radiant intensity
@@ -131,7 +131,12 @@ DirectRays::DirectRays(const Scene& scene, const gl::Capabilities& capabilities,
   const auto vec = [](const glm::dvec3& v, double w = 0.0) { return glm::vec4(glm::vec3(v), static_cast<float>(w)); };
   std::vector<Light> lights;
   for (const Emitter& emitter : emitters) {
-    const auto corner = [&](std::size_t k) { return emitter.corners[k].position; };
+    // From an end of the shortest edge: as the difference of two long ones it would be lost.
+    const auto length = [&](std::size_t k) {
+      return glm::distance(emitter.corners[k].position, emitter.corners[(k + 1) % 3].position);
+    };
+    const std::size_t shortest = length(0) <= std::min(length(1), length(2)) ? 0 : length(1) <= length(2) ? 1 : 2;
+    const auto corner = [&](std::size_t k) { return emitter.corners[(k + shortest) % 3].position; };
     lights.push_back({vec(corner(0) - origin, kTriangle), vec(corner(1) - corner(0)), vec(corner(2) - corner(0)),
                       vec(emitter.exitance)});
   }

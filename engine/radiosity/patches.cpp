@@ -19,12 +19,12 @@ bool isFinite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v
 
 glm::dvec3 cross3(const std::array<glm::dvec3, 3>& c) { return glm::cross(c[1] - c[0], c[2] - c[0]); }
 
-/// Whether a triangle has an area in float. Below this ratio of the doubled area to the squared longest edge it is a
-/// line.
-bool hasArea(const std::array<glm::dvec3, 3>& c) {
+/// Whether a triangle has an area: a ratio of the doubled area to the squared longest edge above that of float's
+/// rounding or, of one that emits, of double's, since a lamp may be as narrow as a thread.
+bool hasArea(const std::array<glm::dvec3, 3>& c, bool emits) {
   const double longest = std::max(
       {glm::dot(c[1] - c[0], c[1] - c[0]), glm::dot(c[2] - c[1], c[2] - c[1]), glm::dot(c[0] - c[2], c[0] - c[2])});
-  return glm::length(cross3(c)) > 1e-7 * longest;
+  return glm::length(cross3(c)) > (emits ? 1e-14 : 1e-7) * longest;
 }
 
 /// Merges positions closer than `tolerance` into one point.
@@ -243,8 +243,14 @@ RadiosityMesh makePatches(const Scene& scene, const PatchSettings& settings) {
         ++mesh.notFinite;
         continue;
       }
+      const bool emits = scene.materials[static_cast<std::size_t>(part.material)].emission != glm::vec3(0.0f);
       for (std::size_t k = 0; k < 3; ++k) patch.point[k] = welder.add(glm::dvec3(vertex[k]->position));
-      if (!hasArea(mesh.corners(patch))) {
+      if (emits && !hasArea(mesh.corners(patch), emits))  // a lamp narrower than what is welded keeps its corners
+        for (std::size_t k = 0; k < 3; ++k) {
+          patch.point[k] = static_cast<std::uint32_t>(mesh.points.size());
+          mesh.points.emplace_back(vertex[k]->position);
+        }
+      if (!hasArea(mesh.corners(patch), emits)) {
         ++mesh.degenerate;
         continue;
       }

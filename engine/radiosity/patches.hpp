@@ -43,7 +43,7 @@ struct RadiosityMesh {
   std::vector<glm::dvec3> points;
   std::vector<Patch> patches;
   std::size_t lightVertices = 0;
-  std::size_t degenerate = 0;  ///< triangles without area, omitted
+  std::size_t degenerate = 0;  ///< triangles without area, omitted; narrow ones that emit have one
   std::size_t notFinite = 0;  ///< triangles with a corner that is not finite, omitted
   std::size_t duplicates = 0;  ///< triangles that coincide with another of the same front, omitted
   std::size_t flipped = 0;  ///< triangles wound against their shading normals, turned

@@ -36,6 +36,7 @@ vec3 directIrradiance(vec3 position, vec3 normal, vec3 face, float plane, float 
   vec3 p = position - directOrigin.xyz - face * (dot(position, face) - plane), start = offsetRay(p, face, magnitude);
   vec3 u = normalize(abs(normal.x) > 0.5 ? vec3(normal.y, -normal.x, 0.0) : vec3(0.0, normal.z, -normal.y)),
        v = cross(normal, u);
+  mat3 toFrame = mat3(u, v, normal);
   vec2 shift = directShift(uvec2(gl_FragCoord.xy));
   vec3 sum = vec3(0.0);
   for (int i = 0; i < directLights.length() && i < directHead.x; ++i) {
@@ -44,11 +45,9 @@ vec3 directIrradiance(vec3 position, vec3 normal, vec3 face, float plane, float 
     vec3 facing = kind == 0 ? cross(light.b.xyz, light.c.xyz) : vec3(0.0);
     vec3 unblocked = vec3(0.0);
     if (kind == 0) {
-      vec3 a = light.a.xyz - p, b = a + light.b.xyz, c = a + light.c.xyz;
+      vec3 a = light.a.xyz - p, ab = light.b.xyz * toFrame, ca = -light.c.xyz * toFrame;
       if (dot(a, facing) < 0.0)
-        unblocked = light.d.xyz * pointToTriangle(vec3(dot(a, u), dot(a, v), dot(a, normal)),
-                                                  vec3(dot(b, u), dot(b, v), dot(b, normal)),
-                                                  vec3(dot(c, u), dot(c, v), dot(c, normal)));
+        unblocked = light.d.xyz * formFactor(a * toFrame, ab, (light.c.xyz - light.b.xyz) * toFrame, ca);
     } else {
       vec3 to = kind == 1 ? light.a.xyz : light.a.xyz - p;
       float distance2 = dot(to, to);

@@ -68,6 +68,7 @@ TEST_F(LightLimits, ANarrowLampDoesNotShadeItself) {
     const double mean = pathMean(scene, 512, error, 1);
     EXPECT_NEAR(mean, expected, 4.0 * error + 1e-4 * expected) << width;
     EXPECT_LT(error, 0.01 * expected);
+    EXPECT_NEAR(picture(scene, "radiosity"), expected, 1e-3 * expected) << width;
   }
 }
 

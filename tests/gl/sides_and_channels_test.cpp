@@ -137,6 +137,22 @@ TEST_F(SidesAndChannels, LightOfEachChannelIsCarriedAlike) {
   }
 }
 
+/// Form factors from the origin with normal +z, of three corners a triangle.
+std::vector<float> formFactorsOf(gl::ProgramLibrary& library, const std::vector<glm::vec4>& corners) {
+  const std::size_t count = corners.size() / 3;
+  const gl::Program& program = library.loadCompute("polygon probe", "radiosity/polygon_probe.comp", {});
+  const gl::Buffer in("corners", corners.size() * sizeof(glm::vec4), corners.data(), gl::Usage::staticDraw);
+  const gl::Buffer out("form factors", count * sizeof(float), nullptr, gl::Usage::dynamicRead);
+  in.bindStorage(0);
+  out.bindStorage(1);
+  {
+    const gl::ComputePass pass("probe");
+    program.use();
+    pass.dispatch({static_cast<int>(count), 1, 1}, {64, 1, 1});
+  }
+  return out.read<float>();
+}
+
 TEST_F(SidesAndChannels, FormFactorsOfTrianglesThatTheHorizonCuts) {
   std::mt19937 random(5);
   std::normal_distribution<double> normal;
@@ -157,18 +173,41 @@ TEST_F(SidesAndChannels, FormFactorsOfTrianglesThatTheHorizonCuts) {
     expected.push_back(reference::pointToPolygon({0, 0, 0}, {0, 0, 1}, triangle));
   }
   for (const int count : below) EXPECT_GT(count, 300);
-  const gl::Program& program = library().loadCompute("polygon probe", "radiosity/polygon_probe.comp", {});
-  const gl::Buffer in("corners", corners.size() * sizeof(glm::vec4), corners.data(), gl::Usage::staticDraw);
-  const gl::Buffer out("form factors", expected.size() * sizeof(float), nullptr, gl::Usage::dynamicRead);
-  in.bindStorage(0);
-  out.bindStorage(1);
-  {
-    const gl::ComputePass pass("probe");
-    program.use();
-    pass.dispatch({static_cast<int>(expected.size()), 1, 1}, {64, 1, 1});
-  }
-  const std::vector<float> found = out.read<float>();
+  const std::vector<float> found = formFactorsOf(library(), corners);
   for (std::size_t i = 0; i < expected.size(); ++i) ASSERT_NEAR(found[i], expected[i], 2e-5 + 1e-4 * expected[i]) << i;
+}
+
+TEST_F(SidesAndChannels, FormFactorsOfNeedles) {
+  // Widths of 1e-1 to 1e-6 of the length, each corner first, wound either way, above, below and across the horizon.
+  std::mt19937 random(6);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> uniform;
+  std::vector<glm::vec4> corners;
+  std::vector<double> expected, allowed;
+  std::array<int, 4> below{};
+  for (int i = 0; i < 12288; ++i) {
+    const double width = std::pow(10.0, -1.0 - 5.0 * (i % 64) / 63.0);
+    const glm::dvec3 along = glm::normalize(glm::dvec3(normal(random), normal(random), normal(random))),
+                     across = glm::normalize(glm::cross(along, glm::dvec3(normal(random), normal(random), 1.0)));
+    const glm::dvec3 at(2.0 * uniform(random) - 1.0, 2.0 * uniform(random) - 1.0, uniform(random) - 0.3);
+    std::array<glm::dvec3, 3> triangle{at - along, at + along, at + (2.0 * uniform(random) - 1.0) * along};
+    triangle[2] += 2.0 * width * across;
+    std::rotate(triangle.begin(), triangle.begin() + i % 3, triangle.end());
+    if ((i / 3) % 2 == 1) std::swap(triangle[0], triangle[1]);
+    int under = 0;
+    for (glm::dvec3& p : triangle) {
+      p = glm::dvec3(glm::vec3(p));
+      under += p.z <= 0.0;
+      corners.emplace_back(glm::vec3(p), 0.0f);
+    }
+    ++below[static_cast<std::size_t>(under)];
+    expected.push_back(reference::pointToPolygon({0, 0, 0}, {0, 0, 1}, triangle));
+    // The long edge's ends are rounded, so the width is off by 1e-7 of it; and what is seen on edge cancels.
+    allowed.push_back((1e-4 + 4e-7 / width) * expected.back() + 2e-4 * width + 1e-8);
+  }
+  for (const int count : below) EXPECT_GT(count, 300);
+  const std::vector<float> found = formFactorsOf(library(), corners);
+  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(found[i], expected[i], allowed[i]) << i;
 }
 
 // ------------------------------------------------------------------------------------------- lamps in radiosity's
