@@ -32,6 +32,15 @@ struct RenderOptions {
   int repeat = 1;
 };
 
+/// Radiosity's direct light, unless it is chosen: by pixels, but by patches where a deviation is switched on, whose
+/// error shadow rays would hide.
+void chooseDirectLight(RenderSettings& settings) {
+  auto& view = settings.of<RadiosityView::Settings>();
+  if (view.direct == RadiosityView::Direct::automatic)
+    view.direct = activeRadiosityDeviations(view.solution.deviations).empty() ? RadiosityView::Direct::pixels
+                                                                              : RadiosityView::Direct::patches;
+}
+
 /// --inspect: prints what lit a pixel. Path tracing traces only that pixel's paths.
 int inspect(const RenderOptions& options) {
   if (!options.output.empty())
@@ -42,8 +51,7 @@ int inspect(const RenderOptions& options) {
   RenderSettings settings = options.picture.parse();
   settings.pixelSamples = 1;  // what lit its centre
   settings.fullFloatTarget = true;
-  if (settings.of<RadiosityView::Settings>().direct == RadiosityView::Direct::automatic)
-    settings.of<RadiosityView::Settings>().direct = RadiosityView::Direct::pixels;
+  chooseDirectLight(settings);
   const glm::ivec2 pixel = parsePixel(options.inspected, settings.size);
   const Scene scene = loadScene(options.scene);
   const Camera camera = chooseCamera(scene, options.camera);
@@ -81,8 +89,7 @@ int runRender(RenderOptions options) {
   if (options.output.empty()) throwBadInput("--output is missing: the file for the picture");
   RenderSettings settings = options.picture.parse();
   settings.fullFloatTarget = true;
-  if (settings.of<RadiosityView::Settings>().direct == RadiosityView::Direct::automatic)
-    settings.of<RadiosityView::Settings>().direct = RadiosityView::Direct::pixels;
+  chooseDirectLight(settings);
   if (!isWritableImageName(options.output))
     throwBadInput("-o {}: the extension must be png, hdr, exr or pfm", options.output);
   Scene scene = loadScene(options.scene);

@@ -54,8 +54,8 @@ std::span<const Setting> radiositySettings() {
       {"radiosity.mesh", boolean(SETTING_FIELD(View, mesh)), "", "draw the edges of patches"},
       {"radiosity.flat", boolean(SETTING_FIELD(View, flat)), "", "show patches without interpolation"},
       {"radiosity.direct", choice(SETTING_FIELD(View, direct)), "",
-       "direct light: pixels, by shadow rays per pixel; patches, one value per patch; auto: pixels in render, patches "
-       "elsewhere"},
+       "direct light: pixels, by shadow rays per pixel; patches, one value per patch; auto: pixels in render without "
+       "deviations, patches elsewhere"},
       {"radiosity.shadow-rays", number(SETTING_FIELD(View, shadowRays), 1, 4096), "rays",
        "a pixel with radiosity.direct=pixels, divided among the emissive triangles"},
   };

@@ -107,6 +107,15 @@ TEST_F(RadiosityCorrected, SettingsAndDeviationsAreTakenAlikeByRenderAndSolve) {
   for (const char* name :
        {"radiosity.published-map", "radiosity.centroid", "radiosity.fixed-orientation", "radiosity.no-near-field"})
     EXPECT_NE(json("r.json")["deviations"].dump().find(name), std::string::npos) << name;
+  // Deviations show in direct light too, which shadow rays would hide.
+  for (const char* direct : {"auto", "patches", "pixels"})
+    expectWorks(render(
+        "--fidelity original --component direct --set radiosity.edge=1.2 --set radiosity.direct=" + std::string(direct),
+        std::string(direct) + ".pfm"));
+  expectWorks(render("--component direct --set radiosity.edge=1.2", "corrected.pfm"));
+  EXPECT_EQ(bytes("auto.pfm"), bytes("patches.pfm"));
+  EXPECT_EQ(bytes("corrected.pfm"), bytes("pixels.pfm"));
+  EXPECT_NE(bytes("auto.pfm"), bytes("pixels.pfm"));
 }
 
 TEST_F(RadiosityCorrected, WrongInputIsOneClearLine) {
