@@ -1,17 +1,21 @@
 #include "radiosity/solution.hpp"
 
 #include "base/error.hpp"
+#include "base/log.hpp"
 #include "radiosity/hemicubes.hpp"
 #include "radiosity/hidden_parts.hpp"
 #include "radiosity/mesh_solver.hpp"
 #include "radiosity/row_file.hpp"
 #include "scene/place.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <unordered_map>
 
 namespace lucerna {
@@ -77,6 +81,18 @@ PatchSettings patchesOf(const Scene& scene, const RadiositySolutionSettings& set
   if (patches.longestEdge <= 0.0) patches.longestEdge = largestExtent(scene) / kEdges;
   if (settings.wholeTriangles) patches.longestEdge = 0.0;
   return patches;
+}
+
+/// Rays and hemicubes do not read masks.
+void warnOfMasks(const Scene& scene) {
+  std::set<std::string> masked;
+  for (const Mesh& mesh : scene.meshes) {
+    const Material& material = scene.materials[static_cast<std::size_t>(mesh.material)];
+    if (material.alphaMasked && mesh.indexCount > 0) masked.insert(fmt::format("'{}'", material.name));
+  }
+  if (!masked.empty())
+    logWarning("radiosity: what masks cut out blocks light as if it were there: {} (path lets light through)",
+               fmt::join(masked, ", "));
 }
 
 std::filesystem::path checkpointOf(std::filesystem::path checkpoint, int refinement) {
@@ -150,6 +166,7 @@ RadiositySolution solveScene(const gl::Context& context, gl::ProgramLibrary& pro
     return solution;
   }
   const RadiositySolutionSettings settings = withDeviations(asked);
+  warnOfMasks(scene);
   const PatchSettings patches = patchesOf(scene, settings);
   const double largest = largestExtent(scene);
   const double shortest =

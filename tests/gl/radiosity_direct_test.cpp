@@ -1,5 +1,6 @@
 // Direct light of a radiosity picture by shadow rays in each pixel: against closed forms where nothing is between,
 // against many rays in double where something is; and the parts of the picture add up.
+#include "base/log.hpp"
 #include "radiosity/direct_rays.hpp"
 #include "radiosity/radiosity_view.hpp"
 #include "render/renderer.hpp"
@@ -228,6 +229,24 @@ TEST_F(RadiosityDirect, APictureThatShinesLightsByItsTexels) {
   const std::size_t pieces = DirectRays::emitterCount(builder.scene());
   EXPECT_GT(pieces, 16u);
   EXPECT_LE(pieces, DirectRays::kMostEmitters);
+}
+
+TEST_F(RadiosityDirect, MasksThatBlockLightAreNamed) {
+  SceneBuilder builder;
+  const int grey = lambertian(builder, 0.5), leaf = lambertian(builder, 0.5), unused = lambertian(builder, 0.5);
+  for (const auto& [index, name] : {std::pair{leaf, "leaf"}, std::pair{unused, "unused"}}) {
+    builder.materialAt(index).name = name;
+    builder.materialAt(index).alphaMasked = true;
+    builder.materialAt(index).diffuseTexture = builder.texture(1, 1, {255, 255, 255, 0}, true);
+  }
+  builder.plate({0, 0, 0}, {0, 0, 4}, {4, 0, 0}, grey);
+  builder.plate({0, 1, 0}, {0, 0, 4}, {4, 0, 0}, leaf);
+  const std::size_t before = loggedWarnings().size();
+  picture(builder.scene(), kAbove, Component::all, RadiosityView::Direct::pixels, 8);
+  const std::vector<std::string> warnings = loggedWarnings();
+  ASSERT_EQ(warnings.size(), before + 1);
+  EXPECT_NE(warnings.back().find("'leaf'"), std::string::npos) << warnings.back();
+  EXPECT_EQ(warnings.back().find("unused"), std::string::npos) << warnings.back();
 }
 
 TEST_F(RadiosityDirect, NoBackShowsAtASilhouette) {
