@@ -196,6 +196,25 @@ Scene nested(bool denseFirst) {
   return std::move(scene);
 }
 
+/// A closed room of albedo 0.6 with a lamp below its ceiling, wound inwards and down, or turned.
+Scene turned(bool room, bool lamp) {
+  SceneParts parts("turned");
+  const int wall = parts.material(glm::vec3(0.6f));
+  const auto plate = [&](const glm::dvec3& centre, const glm::dvec3& u, const glm::dvec3& v, bool other, int material) {
+    parts.plate(centre, other ? v : u, other ? u : v, material);
+  };
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double side : {-1.0, 1.0}) {
+      glm::dvec3 centre(0.0), u(0.0), v(0.0);
+      centre[axis] = side;
+      u[(axis + 1) % 3] = v[(axis + 2) % 3] = 2.0;
+      plate(centre, u, v, (side > 0.0) != room, wall);
+    }
+  plate({0, 0.5, 0}, {0.5, 0, 0}, {0, 0, 0.5}, lamp, parts.material(glm::vec3(0.0f), glm::vec3(4.0f)));
+  parts.scene().cameras.push_back(limitsCamera({0.5, 0.2, 0.6}, {-0.3, -1.0, -0.2}, 0.9));
+  return std::move(parts.scene());
+}
+
 }  // namespace
 
 void addLimitCases(std::vector<StabilityCase>& cases) {
@@ -242,6 +261,15 @@ void addLimitCases(std::vector<StabilityCase>& cases) {
                      const double expected = 0.5 * toRectangle(0.25, 0.25, 0.4);
                      return Measurement{expected, limitsPicture(c, parts.scene(), "radiosity", 2.0), 1e-3 * expected};
                    }});
+  for (const auto& [room, lamp] : {std::pair{false, true}, std::pair{true, false}, std::pair{true, true}})
+    cases.push_back({"radiosity", "a room or lamp wound the other way, against as it should be",
+                     fmt::format("{}{}{}", room ? "room" : "", room && lamp ? " and " : "", lamp ? "lamp" : ""),
+                     [room = room, lamp = lamp](const StabilityContext& c) {
+                       return Measurement{1.0,
+                                          limitsPicture(c, turned(room, lamp), "radiosity", 0.7) /
+                                              limitsPicture(c, turned(false, false), "radiosity", 0.7),
+                                          0.01};
+                     }});
 }
 
 }  // namespace lucerna::demo::bench

@@ -198,6 +198,44 @@ std::vector<glm::dvec3> directLight(gl::ProgramLibrary& programs, const RayScene
   return irradiance;
 }
 
+std::vector<std::uint32_t> backsMet(gl::ProgramLibrary& programs, const RayScene& rays,
+                                    std::span<const Segment> segments) {
+  const gl::Program& program = programs.loadCompute("backs met", "radiosity/backs_met.comp",
+                                                    {{"ALPHA_MASKS", 0}, {"SHARED_STACK", rays.sharedStack()}});
+  std::vector<std::uint32_t> met;
+  for (std::size_t first = 0; first < segments.size(); first += ShadowRays::kEach) {
+    std::vector<std::array<glm::vec4, 2>> batch;  // origins and directions
+    for (const Segment& s : segments.subspan(first, std::min(ShadowRays::kEach, segments.size() - first)))
+      batch.push_back({glm::vec4(glm::vec3(s.from - rays.origin()), 0.0f), glm::vec4(glm::vec3(s.to - s.from), 0.0f)});
+    const gl::Buffer in("segments", batch.size() * sizeof batch[0], batch.data(), gl::Usage::streamDraw);
+    const gl::Buffer out("backs met", batch.size() * sizeof(GLuint), nullptr, gl::Usage::dynamicRead);
+    {
+      const gl::ComputePass pass("backs met");
+      program.use();
+      program.set("rayCount", static_cast<int>(batch.size()));
+      rays.bind();
+      in.bindStorage(1);
+      out.bindStorage(2);
+      pass.dispatch({static_cast<int>(batch.size()), 1, 1}, {64, 1, 1});
+    }
+    const std::vector<GLuint> read = out.read<GLuint>();
+    met.insert(met.end(), read.begin(), read.end());
+  }
+  return met;
+}
+
+std::vector<std::uint32_t> litFromBehind(gl::ProgramLibrary& programs, const RayScene& rays, const Scene& scene,
+                                         const RadiosityMesh& mesh) {
+  std::vector<Segment> segments;
+  for (const Patch& patch : mesh.patches)
+    for (const Arrival& arrival : arrivals(scene, patch.centroid, 4.0 * mesh.extent))
+      if (arrival.irradiance != glm::dvec3(0.0) && glm::dot(arrival.toLight, patch.faceNormal) < 0.0)
+        segments.push_back({patch.centroid + arrival.toLight, patch.centroid});
+  std::vector<std::uint32_t> lit = backsMet(programs, rays, segments);
+  std::erase(lit, kNoPatch);
+  return lit;
+}
+
 std::vector<glm::dvec3> skyLight(gl::ProgramLibrary& programs, const RayScene& rays, const Scene& scene,
                                  const RadiosityMesh& mesh, std::size_t most) {
   constexpr double kPlastic = 0.75487766624669276;  // 1 / the plastic number: with its square the steps of a lattice in

@@ -7,6 +7,8 @@
 #include "radiosity/patches.hpp"
 #include "rays/ray_scene.hpp"
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
 namespace lucerna {
@@ -23,5 +25,19 @@ std::vector<glm::dvec3> directLight(gl::ProgramLibrary& programs, const RayScene
 /// are left out by these rays; half of all rays go to them alone, in proportion to what each gives.
 std::vector<glm::dvec3> skyLight(gl::ProgramLibrary& programs, const RayScene& rays, const Scene& scene,
                                  const RadiosityMesh& mesh, std::size_t most = 5'000'000);
+
+struct Segment {
+  glm::dvec3 from, to;
+};
+constexpr std::uint32_t kNoPatch = ~0u;
+/// What each segment meets first, its end included: a patch's back, or kNoPatch for a front and for nothing. Of two
+/// sheets in one place, the one that shows its front is met.
+std::vector<std::uint32_t> backsMet(gl::ProgramLibrary& programs, const RayScene& rays,
+                                    std::span<const Segment> segments);
+
+/// Patches whose backs the sun, a spot or an omnidirectional lamp lights, some more than once: a segment from each lamp
+/// to each patch.
+std::vector<std::uint32_t> litFromBehind(gl::ProgramLibrary& programs, const RayScene& rays, const Scene& scene,
+                                         const RadiosityMesh& mesh);
 
 }  // namespace lucerna

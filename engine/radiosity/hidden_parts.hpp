@@ -15,7 +15,38 @@
 #include "radiosity/patches.hpp"
 #include "rays/ray_scene.hpp"
 
+#include <cstdint>
+#include <span>
+#include <vector>
+
 namespace lucerna {
+
+/// What a ray from a part of a patch meets.
+class PartMet {
+ public:
+  explicit PartMet(std::uint32_t bits) : bits_(bits) {}
+  bool isNothing() const { return bits_ == 0; }
+  bool isBack() const { return (bits_ & kBack) != 0; }
+  bool isFront() const { return !isNothing() && !isBack(); }
+  std::uint32_t patch() const { return isBack() ? bits_ & ~kBack : (bits_ - 1) / kParts; }
+  std::size_t part() const { return (bits_ - 1) % kParts; }  ///< of a front
+  std::size_t place() const { return bits_ - 1; }  ///< of a front, among all parts of all patches
+
+ private:
+  static constexpr std::uint32_t kBack = 0x80000000u;  ///< shaders/radiosity/hidden_parts.comp
+  static constexpr std::uint32_t kParts = kPatchParts * kPatchParts;
+  std::uint32_t bits_;
+};
+
+enum class PatchSide { front, back };
+
+/// `raysEach` cosine-distributed rays from each part of `patches`, on one side of them. `rays`: of sceneOf(mesh).
+std::vector<PartMet> metFromParts(gl::ProgramLibrary& programs, const RayScene& rays, const RadiosityMesh& mesh,
+                                  std::span<const std::uint32_t> patches, std::size_t raysEach, PatchSide side);
+/// Openness of all parts of all patches, 0 to 1.
+std::vector<float> opennessOfParts(gl::ProgramLibrary& programs, const RayScene& rays, const RadiosityMesh& mesh);
+/// The parts of a patch that are hidden, a bit each; `mostOpen`: of the parts that they are compared with.
+std::uint16_t hiddenOf(std::span<const float> openness, float mostOpen);
 
 /// Sets `hidden` of patches; area and centroid become those of the rest. `rays`: of sceneOf(mesh). Returns the area
 /// cut, scene units squared.

@@ -7,7 +7,7 @@
 #include "radiosity/direct_light.hpp"
 #include "radiosity/form_factor_matrix.hpp"
 #include "radiosity/hemicubes.hpp"
-#include "radiosity/hidden_parts.hpp"
+#include "radiosity/backs.hpp"
 #include "radiosity/row_file.hpp"
 #include "scene/features.hpp"
 
@@ -106,7 +106,7 @@ class MeshSolver {
     report(RadiosityStage::Kind::direct, 0);
     RadiositySolution solution;
     const RayScene rays(sceneOf(mesh), capabilities);
-    if (!input_.settings.deviations.centroid) cutHiddenParts(input_.programs, rays, mesh);
+    if (!input_.settings.deviations.centroid) cutHiddenPartsOfFronts(input_.context, input_.programs, rays, mesh);
     solution.direct = directLight(input_.programs, rays, input_.scene, mesh);
     solution.fromSky = analyse(input_.scene).environment ? skyLight(input_.programs, rays, input_.scene, mesh)
                                                          : Vectors(count_, glm::dvec3(0.0));

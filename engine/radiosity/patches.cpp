@@ -79,29 +79,6 @@ void complete(Patch& patch, const RadiosityMesh& mesh, const Scene& scene) {
         meanTexture(scene.textures[static_cast<std::size_t>(material.emissionTexture)].bitmap, patch.texCoord);
 }
 
-/// Corners share a light vertex if point and material are the same and their normals differ by less than the crease.
-void numberLightVertices(RadiosityMesh& mesh, const PatchSettings& settings) {
-  struct Group {
-    int material;
-    glm::vec3 normal;
-    std::uint32_t index;
-  };
-  std::vector<std::vector<Group>> groups(mesh.points.size());
-  std::uint32_t count = 0;
-  for (Patch& patch : mesh.patches)
-    for (int k = 0; k < 3; ++k) {
-      auto& here = groups[patch.point[static_cast<std::size_t>(k)]];
-      const glm::vec3 normal = patch.normal[static_cast<std::size_t>(k)];
-      const auto same = [&](const Group& g) {
-        return g.material == patch.material && static_cast<double>(glm::dot(g.normal, normal)) >= settings.crease;
-      };
-      auto found = std::find_if(here.begin(), here.end(), same);
-      if (found == here.end()) found = here.insert(here.end(), {patch.material, normal, count++});
-      patch.light[static_cast<std::size_t>(k)] = found->index;
-    }
-  mesh.lightVertices = count;
-}
-
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 struct EdgeHash {
   std::size_t operator()(const Edge& e) const {
@@ -143,6 +120,28 @@ std::array<Patch, 2> halved(const Patch& patch, int k, std::uint32_t middle) {
 }
 
 }  // namespace
+
+void numberLightVertices(RadiosityMesh& mesh, const PatchSettings& settings) {
+  struct Group {
+    int material;
+    glm::vec3 normal;
+    std::uint32_t index;
+  };
+  std::vector<std::vector<Group>> groups(mesh.points.size());
+  std::uint32_t count = 0;
+  for (Patch& patch : mesh.patches)
+    for (int k = 0; k < 3; ++k) {
+      auto& here = groups[patch.point[static_cast<std::size_t>(k)]];
+      const glm::vec3 normal = patch.normal[static_cast<std::size_t>(k)];
+      const auto same = [&](const Group& g) {
+        return g.material == patch.material && static_cast<double>(glm::dot(g.normal, normal)) >= settings.crease;
+      };
+      auto found = std::find_if(here.begin(), here.end(), same);
+      if (found == here.end()) found = here.insert(here.end(), {patch.material, normal, count++});
+      patch.light[static_cast<std::size_t>(k)] = found->index;
+    }
+  mesh.lightVertices = count;
+}
 
 double RadiosityMesh::area() const {
   double sum = 0.0;

@@ -2,7 +2,7 @@
 //
 // Every triangle with an area becomes one or more patches. Corners in the same place become one point, and edges are
 // cut for both of their patches at once, so that no T-junctions arise. A patch faces the side of its shading normals
-// (or of its winding without them); its back blocks light and emits none.
+// (or of its winding without them); its back blocks light. Where a back matters it is a patch of its own (backs.hpp).
 #pragma once
 
 #include "scene/scene.hpp"
@@ -31,6 +31,7 @@ struct Patch {
   glm::dvec3 emission{0.0};  ///< own exitance, pi times the material's radiance
   int material = 0;
   std::uint32_t triangle = 0;  ///< of the scene
+  bool isBack = false;  ///< a triangle's second patch, on its other side: backs.hpp
 };
 
 struct PatchSettings {
@@ -66,6 +67,10 @@ RadiosityMesh makePatches(const Scene& scene, const PatchSettings& settings);
 RadiosityMesh refined(const Scene& scene, const RadiosityMesh& mesh, const PatchSettings& settings,
                       const std::function<bool(std::size_t, int)>& marked,
                       std::vector<std::uint32_t>* parent = nullptr);
+
+/// Numbers the light vertices: corners share one if point and material are the same and their normals differ by less
+/// than the crease.
+void numberLightVertices(RadiosityMesh& mesh, const PatchSettings& settings);
 
 /// Patches as a separate scene, in order and with one material, for a hierarchy.
 Scene sceneOf(const RadiosityMesh& mesh);

@@ -2,8 +2,8 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "radiosity/backs.hpp"
 #include "radiosity/hemicubes.hpp"
-#include "radiosity/hidden_parts.hpp"
 #include "radiosity/mesh_solver.hpp"
 #include "radiosity/row_file.hpp"
 #include "scene/place.hpp"
@@ -83,6 +83,13 @@ PatchSettings patchesOf(const Scene& scene, const RadiositySolutionSettings& set
   return patches;
 }
 
+RadiosityMesh patchesWithBacks(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
+                               const PatchSettings& settings) {
+  RadiosityMesh mesh = makePatches(scene, settings);
+  addBacks(context, programs, scene, mesh, settings);
+  return mesh;
+}
+
 /// Rays and hemicubes do not read masks.
 void warnOfMasks(const Scene& scene) {
   std::set<std::string> masked;
@@ -117,9 +124,9 @@ FormFactorParts::FormFactorParts(const gl::Context& context, gl::ProgramLibrary&
   if (const glm::dvec3 origin = floatingOrigin(asked.bounds); origin != glm::dvec3(0.0))
     work_->moved = movedTo(asked, origin);
   const Scene& scene = work_->moved ? *work_->moved : asked;
-  work_->mesh = makePatches(scene, patchesOf(scene, settings));
+  work_->mesh = patchesWithBacks(context, programs, scene, patchesOf(scene, settings));
   work_->rays.emplace(sceneOf(work_->mesh), context.capabilities());
-  if (!settings.deviations.centroid) cutHiddenParts(programs, *work_->rays, work_->mesh);
+  if (!settings.deviations.centroid) cutHiddenPartsOfFronts(context, programs, *work_->rays, work_->mesh);
   if (settings.hemicubes.visibility == HemicubeVisibility::automatic)
     settings.hemicubes.visibility = visibilityByCount(work_->mesh, settings.hemicubes.resolution);
   work_->hemicubes.emplace(programs, context.capabilities(), work_->mesh, settings.hemicubes, &*work_->rays);
@@ -172,7 +179,7 @@ RadiositySolution solveScene(const gl::Context& context, gl::ProgramLibrary& pro
   const double shortest =
       (patches.longestEdge > 0.0 ? patches.longestEdge : largest / kEdges) / std::pow(2.0, settings.refinements + 1);
   RadiositySolution solution;
-  RadiosityMesh mesh = makePatches(scene, patches);
+  RadiosityMesh mesh = patchesWithBacks(context, programs, scene, patches);
   HemicubeVisibility visibility = settings.hemicubes.visibility;
   for (int refinement = 0;; ++refinement) {
     RadiositySolution next =

@@ -46,7 +46,7 @@ vec3 directIrradiance(vec3 position, vec3 normal, vec3 face, float plane, float 
     vec3 unblocked = vec3(0.0);
     if (kind == 0) {
       vec3 a = light.a.xyz - p, ab = light.b.xyz * toFrame, ca = -light.c.xyz * toFrame;
-      if (dot(a, facing) < 0.0)
+      if (dot(a, facing) != 0.0)
         unblocked = light.d.xyz * formFactor(a * toFrame, ab, (light.c.xyz - light.b.xyz) * toFrame, ca);
     } else {
       vec3 to = kind == 1 ? light.a.xyz : light.a.xyz - p;
@@ -70,7 +70,7 @@ vec3 directIrradiance(vec3 position, vec3 normal, vec3 face, float plane, float 
       if (kind == 0) {
         vec3 to = light.a.xyz + xi.x * light.b.xyz + xi.y * light.c.xyz - p;
         float distance2 = dot(to, to);
-        weight = max(dot(to, normal), 0.0) * max(-dot(to, facing), 0.0) / (distance2 * distance2);
+        weight = max(dot(to, normal), 0.0) * abs(dot(to, facing)) / (distance2 * distance2);
         ray.direction = to + (p - start);
       } else if (kind == 1) {
         ray.direction = light.a.xyz;

@@ -5,10 +5,10 @@ layout(local_size_x = 64) in;
 #include "radiosity/triangle_parts.glsl"
 struct TestedPatch {
   vec4 a, b, c;  // corners, in the hierarchy's space; a's w: the patch
-  vec4 normal;   // w: the largest coordinate
+  vec4 normal;   // to the side that rays leave on; w: the largest coordinate
 };
 layout(std430, binding = 1) readonly buffer TestedPatches { TestedPatch tested[]; };
-// part + 1 for a front face, 0 if nothing is hit, ~0 for a back face
+// part + 1 for a front face, 0 if nothing is hit, the patch with the highest bit set for a back face
 layout(std430, binding = 2) writeonly buffer Seen { uint seen[]; };
 uniform int testedCount, raysEach;
 
@@ -34,7 +34,8 @@ void main() {
          normal = cross(toB, toC);
     vec3 place = ray.origin - a + direction * (dot(normal, a - ray.origin) / dot(normal, direction));
     vec2 barycentrics = vec2(dot(cross(place, toC), normal), dot(cross(toB, place), normal)) / dot(normal, normal);
-    result = met.front ? 1u + met.patchIndex * uint(kPatchParts) + uint(partAt(barycentrics)) : 0xffffffffu;
+    result = met.front ? 1u + met.patchIndex * uint(kPatchParts) + uint(partAt(barycentrics))
+                       : met.patchIndex | 0x80000000u;
   }
   seen[index] = result;
 }

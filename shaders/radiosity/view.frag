@@ -1,5 +1,5 @@
 // Displays a radiosity solution: albedo and texture times irradiance, plus emission. Output: radiance, linear, scene
-// units. A patch's back emits nothing.
+// units. A back without a patch of its own is black.
 #include "lib/frame.glsl"
 #include "lib/material.glsl"
 #if SPECULAR

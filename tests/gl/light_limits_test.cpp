@@ -25,13 +25,14 @@ class LightLimits : public PathTest {
     error = s.meanError.x;
     return s.mean.x;
   }
-  double picture(const Scene& scene, const std::string& technique) {
+  double picture(const Scene& scene, const std::string& technique, Component component = Component::direct,
+                 double longestEdge = 1.0) {
     RenderSettings settings;
     settings.technique = technique;
-    settings.component = Component::direct;
+    settings.component = component;
     settings.size = {8, 8};
     settings.fullFloatTarget = true;
-    settings.of<RadiosityView::Settings>().solution.patches.longestEdge = 1.0;
+    settings.of<RadiosityView::Settings>().solution.patches.longestEdge = longestEdge;
     settings.of<RadiosityView::Settings>().direct = RadiosityView::Direct::pixels;
     Renderer renderer(context(), library(), scene, settings);
     renderer.renderToTheEnd(scene.cameras.front());
@@ -133,6 +134,45 @@ TEST_F(LightLimits, ADenseMediumUnderTheSunIsExactAtItsFace) {
       EXPECT_NEAR(mean, expected, 4.0 * error + 1e-4 * expected) << halfWidth << once;
       EXPECT_LT(error, 0.01 * expected);
     }
+}
+
+/// A closed room with a lamp below its ceiling, each wound so that its front faces inwards and down, or the other way;
+/// `lamp`: an emissive plate, else an omnidirectional one.
+Scene windings(bool room, bool plate, bool lamp) {
+  SceneBuilder builder;
+  builder.scene().sun.reset();
+  const int wall = builder.material(glm::vec3(0.6f));
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double side : {-1.0, 1.0}) {
+      glm::dvec3 centre(0.0), u(0.0), v(0.0);
+      centre[axis] = side;
+      u[(axis + 1) % 3] = v[(axis + 2) % 3] = 2.0;
+      const bool in = (side < 0.0) == room;
+      builder.plate(centre, in ? u : v, in ? v : u, wall);
+    }
+  if (lamp) {
+    const int light = builder.material(glm::vec3(0.0f));
+    builder.materialAt(light).emission = glm::vec3(4.0f);
+    const glm::dvec3 u(0.5, 0, 0), v(0, 0, 0.5);
+    builder.plate({0, 0.5, 0}, plate ? u : v, plate ? v : u, light);
+  } else {
+    builder.scene().points.push_back({{0.1, 0.5, 0.0}, glm::vec3(1.0f)});
+  }
+  builder.scene().cameras = {lookingAt({0.5, 0.2, 0.6}, {-0.3, -1, -0.2}, 0.9)};
+  return builder.scene();
+}
+
+TEST_F(LightLimits, RadiosityIsThatOfPathsHoweverSurfacesAreWound) {
+  for (const bool lamp : {true, false}) {
+    double error = 0.0;
+    const double expected = pathMean(windings(true, true, lamp), 2048, error);
+    EXPECT_LT(error, 0.01 * expected);
+    for (const auto& [room, plate] :
+         {std::pair{true, true}, std::pair{true, false}, std::pair{false, true}, std::pair{false, false}})
+      EXPECT_NEAR(picture(windings(room, plate, lamp), "radiosity", Component::all, 0.3), expected,
+                  4.0 * error + 0.01 * expected)
+          << lamp << room << plate;
+  }
 }
 
 }  // namespace
