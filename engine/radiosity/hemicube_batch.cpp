@@ -72,7 +72,8 @@ gl::BufferTexture cornersOf(const RadiosityMesh& mesh) {
   std::vector<glm::vec4> corners;
   corners.reserve(3 * mesh.patches.size());
   for (const Patch& patch : mesh.patches)
-    for (const glm::dvec3& corner : mesh.corners(patch)) corners.emplace_back(glm::vec3(corner), 0.0f);
+    for (const glm::dvec3& corner : mesh.corners(patch))
+      corners.emplace_back(glm::vec3(corner), patch.emission != glm::dvec3(0.0) ? 1.0f : 0.0f);
   return {"radiosity corners", gl::Format::rgba32f, corners.size() * sizeof(glm::vec4), corners.data()};
 }
 

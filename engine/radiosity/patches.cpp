@@ -301,16 +301,22 @@ RadiosityMesh makePatches(const Scene& scene, const PatchSettings& settings) {
 
 Scene sceneOf(const RadiosityMesh& mesh) {
   Scene scene;
-  scene.materials.emplace_back();
-  for (const Patch& patch : mesh.patches)
+  scene.materials.resize(2);
+  scene.materials[1].emission = glm::vec3(1.0f);
+  for (const Patch& patch : mesh.patches) {
+    const int material = patch.emission != glm::dvec3(0.0) ? 1 : 0;
+    if (scene.meshes.empty() || scene.meshes.back().material != material) {
+      Mesh& part = scene.meshes.emplace_back();
+      part.material = material;
+      part.firstIndex = static_cast<std::uint32_t>(scene.indices.size());
+    }
     for (const glm::dvec3& corner : mesh.corners(patch)) {
       scene.indices.push_back(static_cast<std::uint32_t>(scene.vertices.size()));
       scene.vertices.emplace_back().position = glm::vec3(corner);
       scene.bounds.add(glm::dvec3(scene.vertices.back().position));
     }
-  Mesh& all = scene.meshes.emplace_back();
-  all.material = 0;
-  all.indexCount = static_cast<std::uint32_t>(scene.indices.size());
+    scene.meshes.back().indexCount += 3;
+  }
   return scene;
 }
 

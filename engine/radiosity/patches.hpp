@@ -72,7 +72,7 @@ RadiosityMesh refined(const Scene& scene, const RadiosityMesh& mesh, const Patch
 /// than the crease.
 void numberLightVertices(RadiosityMesh& mesh, const PatchSettings& settings);
 
-/// Patches as a separate scene, in order and with one material, for a hierarchy.
+/// Patches as a separate scene, in order, for a hierarchy; its second material emits.
 Scene sceneOf(const RadiosityMesh& mesh);
 
 }  // namespace lucerna

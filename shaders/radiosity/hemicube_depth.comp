@@ -6,9 +6,10 @@ layout(std430, binding = 2) buffer Keys { uint keys[]; };
 
 void draw(FaceTriangle f, int face, int firstPixel, int index) {
   Walk w = beginWalk(f, face, firstPixel + facePixels(face));
+  float nearness = nearnessOf(index);
   do {
     vec4 value = valueAt(w);
-    if (covers(w, value)) atomicMax(keys[w.rowStart + w.column], keyOf(value.w, f.front, uint(index)));
+    if (covers(w, value)) atomicMax(keys[w.rowStart + w.column], keyOf(value.w * nearness, f.front, uint(index)));
     advance(w, f);
   } while (w.row <= f.high.y);  // ends: rows and columns are clamped to the face
 }

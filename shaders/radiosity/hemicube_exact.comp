@@ -87,8 +87,8 @@ bool isSeen(Frame frame, int self, Triangle t) {
   vec3 m = (t.a + t.b + t.c) / 3.0;
   if (m.z * frame.origin.w < 1.0) return false;
   Ray ray = Ray(frame.origin.xyz - raysOrigin, 1.0 / (frame.origin.w * m.z),
-                m.x * frame.u.xyz + m.y * frame.v.xyz + m.z * frame.n.xyz, 0.9999);
-  return !anyHit(ray, uint(self));
+                m.x * frame.u.xyz + m.y * frame.v.xyz + m.z * frame.n.xyz, 1.0);
+  return !anyHitToLamp(ray, uint(self));
 }
 #endif
 

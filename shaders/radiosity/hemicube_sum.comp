@@ -39,6 +39,9 @@ vec3 sumOf(FaceTriangle f, int face, int firstPixel, int index) {
   vec3 sum = vec3(0.0);
   int start = firstPixel + facePixels(face), toDelta = (face == 0 ? 0 : 2 * halfFacePixels) - start;
   Walk w = beginWalk(f, face, start);
+#if !ITEMS
+  float nearness = nearnessOf(index);
+#endif
   do {
     vec4 value = valueAt(w);
     int pixel = w.rowStart + w.column;
@@ -46,8 +49,8 @@ vec3 sumOf(FaceTriangle f, int face, int firstPixel, int index) {
 #if ITEMS
     sum.yz += vec2(delta, delta > 0.0 ? 1.0 : 0.0);
 #else
-    sum += vec3(texelFetch(keys, pixel).x == keyOf(value.w, f.front, uint(index)) ? delta : 0.0, delta,
-                delta > 0.0 ? 1.0 : 0.0);
+    bool nearest = texelFetch(keys, pixel).x == keyOf(value.w * nearness, f.front, uint(index));
+    sum += vec3(nearest ? delta : 0.0, delta, delta > 0.0 ? 1.0 : 0.0);
 #endif
     advance(w, f);
   } while (w.row <= f.high.y);  // ends: rows and columns are clamped to the face

@@ -20,6 +20,9 @@ const uint kMostGroups = 65535u;
 // The nearest surface has the largest key. It consists of the inverse distance, with a front face slightly nearer than
 // a back face in the same place (sheets of two fronts); the last bits hold the front flag and the patch, so that ties
 // are resolved identically in every run.
+// The factor of a patch's inverse distance: a lamp is nearer than what it coincides with, on either side, as for rays.
+float nearnessOf(int patchIndex) { return texelFetch(corners, 3 * patchIndex).w > 0.0 ? 1.000012 : 1.0; }
+
 uint keyOf(float inverseDistance, bool front, uint patchIndex) {
   return (floatBitsToUint(front ? inverseDistance * 1.000004 : inverseDistance) & ~15u) | (front ? 8u : 0u) |
          (patchIndex & 7u);

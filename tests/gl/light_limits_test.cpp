@@ -113,6 +113,10 @@ TEST_F(LightLimits, AnEmissivePlateInTheCeilingsPlaneEqualsOneBelow) {
   double error = 0.0, errorBelow = 0.0;
   const double flush = pathMean(scene(0.7), 512, error, 1), below = pathMean(scene(0.69999), 512, errorBelow, 1);
   EXPECT_NEAR(flush, below, 4.0 * (error + errorBelow));
+  for (const Component component : {Component::direct, Component::all}) {
+    const double under = picture(scene(0.69999), "radiosity", component, 0.5);
+    EXPECT_NEAR(picture(scene(0.7), "radiosity", component, 0.5), under, 5e-3 * under) << nameOf(component);
+  }
 }
 
 TEST_F(LightLimits, ADenseMediumUnderTheSunIsExactAtItsFace) {
