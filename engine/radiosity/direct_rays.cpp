@@ -22,7 +22,7 @@ struct Light {
   glm::vec4 a;  ///< a corner at the shortest edge; direction to the sun; position. w: kind
   glm::vec4 b;  ///< an edge; a spot's axis. w: cosine of a spot's inner angle
   glm::vec4 c;  ///< the other edge. w: cosine of a spot's outer angle
-  glm::vec4 d;  ///< exitance; irradiance across the rays; radiant intensity
+  glm::vec4 d;  ///< exitance; irradiance across the rays; radiant intensity. w: size, as PathLight's
 };
 
 struct Corner {
@@ -140,12 +140,17 @@ DirectRays::DirectRays(const Scene& scene, const gl::Capabilities& capabilities,
     lights.push_back({vec(corner(0) - origin, kTriangle), vec(corner(1) - corner(0)), vec(corner(2) - corner(0)),
                       vec(emitter.exitance)});
   }
-  if (scene.sun) lights.push_back({vec(-scene.sun->direction, kSun), {}, {}, vec(glm::dvec3(scene.sun->irradiance))});
+  if (scene.sun)
+    lights.push_back(
+        {vec(-scene.sun->direction, kSun),
+         {},
+         {},
+         vec(glm::dvec3(scene.sun->irradiance), 2.0 * std::pow(std::sin(0.25 * scene.sun->angularDiameter), 2.0))});
   for (const SpotLight& l : scene.spots)
     lights.push_back({vec(l.position - origin, kSpot), vec(l.direction, std::cos(l.innerAngle)),
-                      vec({}, std::cos(l.outerAngle)), vec(glm::dvec3(l.intensity))});
+                      vec({}, std::cos(l.outerAngle)), vec(glm::dvec3(l.intensity), l.radius)});
   for (const PointLight& l : scene.points)
-    lights.push_back({vec(l.position - origin, kPoint), {}, {}, vec(glm::dvec3(l.intensity))});
+    lights.push_back({vec(l.position - origin, kPoint), {}, {}, vec(glm::dvec3(l.intensity), l.radius)});
   const int each = std::max(1, rays / static_cast<int>(std::max<std::size_t>(emitters.size(), 1)));
   // GL buffers cannot be empty: without lights upload one dummy; the count in the head is 0.
   const double raysOfPixel =

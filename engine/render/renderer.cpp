@@ -314,6 +314,8 @@ void Renderer::bindFrameConstants(const FrameView& view) {
   frame.clipFromWorld = view.clipFromWorld;
   frame.cameraPosition = view.viewPoint;
   frame.exposure = exposure_;
+  frame.pixelSample = view.sample;
+  frame.pixelSamples = settings_.pixelSamples;
   if (scene.sun) {
     frame.sunClipFromWorld = glm::mat4(sunFrustum_.clipFromWorld);
     frame.sunDirection = glm::vec3(scene.sun->direction);

@@ -3,6 +3,8 @@
 // visible fraction is the mean over points of the triangle, evenly distributed by area and weighted by their
 // contribution, so without a blocker there is no noise.
 #include "lib/spot.glsl"
+#include "lib/tangent.glsl"
+#include "lib/round_light.glsl"
 #include "rays/bvh.glsl"
 #include "radiosity/polygon.glsl"
 
@@ -57,11 +59,13 @@ vec3 directIrradiance(vec3 position, vec3 normal, vec3 face, float plane, float 
     }
     if (!any(greaterThan(unblocked, vec3(0.0)))) continue;
     float open = 0.0, all = 0.0;
-    int rays = kind == 0 ? directHead.y : 1;
+    // Samples of a pixel share the rays to a triangle; each has one to a disc or a ball, a single one to its middle.
+    int rays = kind == 0 ? (directHead.y + frame.pixelSamples - 1) / frame.pixelSamples : 1;
     for (int k = 0; k < 4096 && k < rays; ++k) {
       // The R2 sequence, based on the plastic number [Roberts2018], shifted per pixel and folded onto the triangle.
-      vec2 xi = fract(shift + float(k + 1) * vec2(0.7548776662, 0.5698402910));
-      if (xi.x + xi.y > 1.0) xi = 1.0 - xi;
+      vec2 xi = fract(shift + float(k + 1 + frame.pixelSample * rays) * vec2(0.7548776662, 0.5698402910));
+      float size = frame.pixelSamples > 1 ? light.d.w : 0.0;
+      if (kind == 0 && xi.x + xi.y > 1.0) xi = 1.0 - xi;
       Ray ray;
       ray.origin = start;
       ray.tMin = 0.0;
@@ -73,10 +77,16 @@ vec3 directIrradiance(vec3 position, vec3 normal, vec3 face, float plane, float 
         weight = max(dot(to, normal), 0.0) * abs(dot(to, facing)) / (distance2 * distance2);
         ray.direction = to + (p - start);
       } else if (kind == 1) {
-        ray.direction = light.a.xyz;
+        ray.direction = coneSample(light.a.xyz, size, xi);
         ray.tMax = 3.0e38;
       } else {
         ray.direction = light.a.xyz - start;
+        if (size > 0.0) {
+          vec3 centre = ray.direction;
+          float distance2 = dot(centre, centre);
+          ray.direction = coneSample(centre * inversesqrt(distance2), ballLessCosine(size, distance2), xi);
+          ray.direction *= distanceToBall(centre, size, ray.direction);
+        }
       }
       all += weight;
       if (weight > 0.0 && !anyHitToLamp(ray, kNoHit)) open += weight;

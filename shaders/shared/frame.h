@@ -12,9 +12,9 @@ struct FrameConstants {
   vec3 sunDirection;       // unit, along which light travels
   float shadowNormalOffset;  // world units: a receiver is moved this far along its normal before the shadow test
   vec3 sunIrradiance;      // across the rays
-  float padding0;
+  int pixelSample;         // number of the sample of each pixel that is drawn, from 0
   vec3 background;         // radiance where there is no surface
-  float padding1;
+  int pixelSamples;        // that a picture has
   vec3 orthographicAxis;   // unit, along an orthographic view; 0: the view is perspective
   float padding2;
 };

@@ -2,6 +2,7 @@
 // shadow rays against maps where a light has no size.
 #include "base/angles.hpp"
 #include "pathtracer/path_tracer.hpp"
+#include "radiosity/radiosity_view.hpp"
 #include "render/renderer.hpp"
 #include "support/gl_fixture.hpp"
 
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <string_view>
 
 namespace lucerna {
 namespace {
@@ -59,9 +61,11 @@ class RoundLights : public test::GlTest {
     tracer.record(samples);
     return tracer.mean();
   }
-  Image drawn(const Scene& scene, ShadowTransport shadows, int samples) {
+  Image drawn(const Scene& scene, ShadowTransport shadows, int samples, std::string_view technique = "direct") {
     RenderSettings settings;
-    settings.technique = "direct";
+    settings.technique = technique;
+    settings.component = Component::direct;
+    settings.of<RadiosityView::Settings>().direct = RadiosityView::Direct::pixels;
     settings.size = {kWidth, kHeight};
     settings.fullFloatTarget = true;
     settings.pixelSamples = samples;
@@ -93,6 +97,19 @@ TEST_F(RoundLights, ThePenumbraOfASunIsTheShareOfItsDisc) {
       EXPECT_LT(worst, 0.03) << degrees << isTraced;
     }
   }
+}
+
+TEST_F(RoundLights, RadiositysPicturesHavePenumbraeOfSunsAndLamps) {
+  FloorScene scene(true);
+  scene.materials[0].diffuse = glm::vec3(0.5f);
+  scene.sun = DirectionalLight{{0.0, -1.0, 0.0}, glm::vec3(static_cast<float>(kPi)), 20.0 * kDegree};
+  const Image sun = drawn(scene, ShadowTransport::map, 256, "radiosity");
+  for (int x = 0; x < kWidth; ++x)
+    EXPECT_NEAR(sun.at(x, 0).x, 0.5 * shareOfDisc(placeOf(x) / (2.0 * std::tan(10.0 * kDegree))), 0.02) << x;
+  scene.sun.reset();
+  scene.points = {PointLight{{0.0, 4.0, 0.0}, glm::vec3(16.0f), 0.5}};
+  const Image lamp = drawn(scene, ShadowTransport::map, 256, "radiosity");
+  EXPECT_NEAR((lamp.at(kWidth / 2 - 1, 0).x + lamp.at(kWidth / 2, 0).x) / 2.0, 0.25 / kPi, 0.006 / kPi);
 }
 
 TEST_F(RoundLights, AnUnblockedBallShinesAsItsCentre) {
