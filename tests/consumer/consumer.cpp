@@ -28,11 +28,12 @@ void draw(const std::filesystem::path& sceneFile, const std::filesystem::path& o
 
   lucerna::RenderSettings settings;
   settings.technique = "lpv";
+  settings.pixelSamples = 16;  // as `lucerna render`; a frame of its own has 1
   settings.size = {96, 64};
   settings.fullFloatTarget = true;
   settings.of<lucerna::LpvSettings>().cascades.cells = 16;
   lucerna::Renderer renderer(context, programs, scene, settings);
-  renderer.render(scene.cameras.front());
+  renderer.renderToTheEnd(scene.cameras.front());
   renderer.drain();
 
   const lucerna::Image radiance = renderer.readRadiance();
