@@ -53,7 +53,7 @@ std::span<const Setting> sharedSettings() {
        "how light counts that falls beside a pixel's centre: box: the pixel's area; gaussian: standard deviation 1/2, "
        "to "
        "1.5 pixels; blackman-harris: to 1.5 pixels; centre: one point",
-       "[Ernst2006; Harris1978]", rebuild, "", "", "all"},
+       "[Ernst2006]", rebuild, "", "", "all"},
       {"picture.reprojection", boolean(FRAME_FIELD(reprojection)), "",
        "while the view moves, earlier frames smooth edges too", "[Salvi2016]", uniform, "", "", "textures"},
       {"frame.reuse", boolean(FRAME_FIELD(reuse)), "",

@@ -172,7 +172,8 @@ TEST_F(Window, TheCursorMeansThePixelThatItIsIn) {
         "9 cursor 120 316\n11 save below.png\n12 key Z\n13 cursor 100 0\n14 key I\n16 touch Pixel/export as JSON\n"
         "18 cursor 200 250\n19 key I\n21 touch Pixel/export as JSON\n"
         "23 cursor 300.9 260.9\n24 key I\n26 touch Pixel/export as JSON\n");
-  const RunResult result = play(path("input.txt"), "--technique direct --set picture.samples=1 --shots .", "", "800x700");
+  const RunResult result =
+      play(path("input.txt"), "--technique direct --set picture.samples=1 --shots .", "", "800x700");
   ASSERT_EQ(result.exitCode, 0) << result.err;
   for (const char* pixel : {"100_0", "200_250", "300_260"})
     EXPECT_TRUE(fs::exists(path(std::string("room_pixel_") + pixel + ".json"))) << pixel;

@@ -184,8 +184,8 @@ TEST(SceneFile, SunsAndLampsHaveASize) {
   const std::string lamp = R"(, "points": [{"position": [0,1,0], "intensity": [1,1,1])";
   EXPECT_EQ(folder.load(lamp + "}]").points[0].radius, 0.0);
   EXPECT_EQ(folder.load(lamp + R"(, "radius": 0.25}])").points[0].radius, 0.25);
-  const std::string spot =
-      R"(, "spots": [{"position": [0,1,0], "direction": [0,-1,0], "intensity": [1,1,1], "innerAngle": 10, "outerAngle": 20)";
+  const std::string spot = R"(, "spots": [{"position": [0,1,0], "direction": [0,-1,0], "intensity": [1,1,1],
+                              "innerAngle": 10, "outerAngle": 20)";
   EXPECT_EQ(folder.load(spot + R"(, "radius": 0.5}])").spots[0].radius, 0.5);
 }
 
