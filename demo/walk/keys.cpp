@@ -34,6 +34,7 @@ constexpr KeyBinding kKeys[] = {
     {key::kTab, false, Action::flicker, "switch between A and B"},
     {'X', false, Action::wipe, "A and B divided by a wipe, dragged with the right button"},
     {'B', false, Action::sideBySide, "A and B side by side"},
+    {'J', false, Action::reprojection, "edges smoothed by earlier frames while the view moves, on or off"},
     {'Z', false, Action::magnifier, "magnifier with values"},
     {'H', false, Action::nextView, "picture, signed error, relative error, z-score, FLIP"},
     {'T', false, Action::liveReference, "live reference: a reference of this view while the camera rests"},

@@ -37,6 +37,7 @@ enum class Action {
   flicker,
   wipe,
   sideBySide,
+  reprojection,
   magnifier,
   nextView,
   liveReference,

@@ -173,6 +173,11 @@ void WalkWindow::act(Action action) {
     case Action::flicker: s.shown = 1 - s.shown; break;
     case Action::wipe: s.layout = s.layout == Layout::wipe ? Layout::one : Layout::wipe; break;
     case Action::sideBySide: s.layout = s.layout == Layout::sideBySide ? Layout::one : Layout::sideBySide; break;
+    case Action::reprojection:
+      for (SideState& side : s.sides)
+        if (side.renderer && readWith(*findSetting("picture.reprojection"), side.renderer->settings().technique))
+          assign(side.options.settings, "picture.reprojection", side.renderer->settings().reprojection ? "off" : "");
+      break;
     case Action::magnifier: s.magnifier = !s.magnifier; break;
     case Action::nextView:
       s.show = static_cast<Show>((static_cast<int>(s.show) + 1) % static_cast<int>(kShowNames.size()));
