@@ -16,12 +16,12 @@
 namespace lucerna {
 namespace {
 
-constexpr int kWidth = 32, kHeight = 2;
-constexpr double kLength = 4.0;  ///< of the picture along x, scene units
+constexpr int kFloorPixels = 32, kFloorRows = 2;
+constexpr double kFloorLength = 4.0;  ///< of the picture along x, scene units
 
 /// A white floor of y = 0, seen from below the blocker, which covers x < 0 at y = 2.
-struct FloorScene : Scene {
-  explicit FloorScene(bool blocked) {
+struct HalfCoveredFloor : Scene {
+  explicit HalfCoveredFloor(bool blocked) {
     materials.resize(1);
     materials[0].diffuse = glm::vec3(1.0f);
     meshes.resize(1);
@@ -33,7 +33,7 @@ struct FloorScene : Scene {
     camera.position = {0.0, 1.0, 0.0};
     camera.direction = {0.0, -1.0, 0.0};
     camera.up = {0.0, 0.0, -1.0};
-    camera.orthographicHeight = kLength * kHeight / kWidth;
+    camera.orthographicHeight = kFloorLength * kFloorRows / kFloorPixels;
     cameras = {camera};
   }
   void add(double y, double from, double to) {
@@ -47,13 +47,13 @@ struct FloorScene : Scene {
   }
 };
 
-double placeOf(int x) { return kLength * ((x + 0.5) / kWidth - 0.5); }
+double placeOf(int x) { return kFloorLength * ((x + 0.5) / kFloorPixels - 0.5); }
 
 class RoundLights : public test::GlTest {
  protected:
   Image traced(const Scene& scene, std::uint32_t samples = 4096) {
     PathTracer::Settings settings;
-    settings.size = {kWidth, kHeight};
+    settings.size = {kFloorPixels, kFloorRows};
     settings.transport = Transport::direct;
     settings.filter = PixelFilter::centre;
     PathTracer tracer(context(), programs(), scene, settings);
@@ -66,7 +66,7 @@ class RoundLights : public test::GlTest {
     settings.technique = technique;
     settings.component = Component::direct;
     settings.of<RadiosityView::Settings>().direct = RadiosityView::Direct::pixels;
-    settings.size = {kWidth, kHeight};
+    settings.size = {kFloorPixels, kFloorRows};
     settings.fullFloatTarget = true;
     settings.pixelSamples = samples;
     settings.filter = PixelFilter::centre;
@@ -84,14 +84,14 @@ double shareOfDisc(double place) {
 }
 
 TEST_F(RoundLights, ThePenumbraOfASunIsTheShareOfItsDisc) {
-  FloorScene scene(true);
+  HalfCoveredFloor scene(true);
   for (const double degrees : {0.53, 20.0}) {
     scene.sun = DirectionalLight{{0.0, -1.0, 0.0}, glm::vec3(static_cast<float>(kPi)), degrees * kDegree};
     const double radius = 2.0 * std::tan(0.5 * degrees * kDegree);
     for (const bool isTraced : {true, false}) {
       const Image image = isTraced ? traced(scene) : drawn(scene, ShadowTransport::rays, 256);
       double worst = 0.0;
-      for (int x = 0; x < kWidth; ++x)
+      for (int x = 0; x < kFloorPixels; ++x)
         worst = std::max(worst, std::abs(image.at(x, 0).x - shareOfDisc(placeOf(x) / radius)));
       std::printf("penumbra of %g degrees, %s: at most %.4f off\n", degrees, isTraced ? "paths" : "shadow rays", worst);
       EXPECT_LT(worst, 0.03) << degrees << isTraced;
@@ -100,20 +100,20 @@ TEST_F(RoundLights, ThePenumbraOfASunIsTheShareOfItsDisc) {
 }
 
 TEST_F(RoundLights, RadiositysPicturesHavePenumbraeOfSunsAndLamps) {
-  FloorScene scene(true);
+  HalfCoveredFloor scene(true);
   scene.materials[0].diffuse = glm::vec3(0.5f);
   scene.sun = DirectionalLight{{0.0, -1.0, 0.0}, glm::vec3(static_cast<float>(kPi)), 20.0 * kDegree};
   const Image sun = drawn(scene, ShadowTransport::map, 256, "radiosity");
-  for (int x = 0; x < kWidth; ++x)
+  for (int x = 0; x < kFloorPixels; ++x)
     EXPECT_NEAR(sun.at(x, 0).x, 0.5 * shareOfDisc(placeOf(x) / (2.0 * std::tan(10.0 * kDegree))), 0.02) << x;
   scene.sun.reset();
   scene.points = {PointLight{{0.0, 4.0, 0.0}, glm::vec3(16.0f), 0.5}};
   const Image lamp = drawn(scene, ShadowTransport::map, 256, "radiosity");
-  EXPECT_NEAR((lamp.at(kWidth / 2 - 1, 0).x + lamp.at(kWidth / 2, 0).x) / 2.0, 0.25 / kPi, 0.006 / kPi);
+  EXPECT_NEAR((lamp.at(kFloorPixels / 2 - 1, 0).x + lamp.at(kFloorPixels / 2, 0).x) / 2.0, 0.25 / kPi, 0.006 / kPi);
 }
 
 TEST_F(RoundLights, AnUnblockedBallShinesAsItsCentre) {
-  FloorScene scene(false);
+  HalfCoveredFloor scene(false);
   for (const double radius : {0.0, 0.1, 0.9}) {
     for (const bool isSpot : {false, true}) {
       scene.points.clear();
@@ -122,8 +122,8 @@ TEST_F(RoundLights, AnUnblockedBallShinesAsItsCentre) {
       if (isSpot) scene.spots = {SpotLight{place, {0, -1, 0}, glm::vec3(2.0f), 1.39, 1.39, radius}};
       else scene.points = {PointLight{place, glm::vec3(2.0f), radius}};
       const Image paths = traced(scene), rays = drawn(scene, ShadowTransport::rays, 16);
-      for (int x = 0; x < kWidth; ++x) {
-        const double away = placeOf(x) - 0.3, beside = 0.5 * kLength / kWidth,
+      for (int x = 0; x < kFloorPixels; ++x) {
+        const double away = placeOf(x) - 0.3, beside = 0.5 * kFloorLength / kFloorPixels,
                      distance2 = away * away + 1.5 * 1.5 + beside * beside,
                      right = 2.0 / kPi * 1.5 / std::pow(distance2, 1.5);
         EXPECT_NEAR(paths.at(x, 0).x / right, 1.0, 0.02) << radius << isSpot << " " << x;
@@ -134,47 +134,49 @@ TEST_F(RoundLights, AnUnblockedBallShinesAsItsCentre) {
 }
 
 TEST_F(RoundLights, BesideAnEdgeBelowItsCentreHalfABallIsSeen) {
-  FloorScene scene(true);
+  HalfCoveredFloor scene(true);
   scene.points = {PointLight{{0.0, 4.0, 0.0}, glm::vec3(16.0f), 0.5}};
   const double half = 0.5 / kPi;  // of 16 / 4^2, over pi
   for (const bool isTraced : {true, false}) {
     const Image image = isTraced ? traced(scene) : drawn(scene, ShadowTransport::rays, 256);
-    EXPECT_NEAR((image.at(kWidth / 2 - 1, 0).x + image.at(kWidth / 2, 0).x) / 2.0, half, 0.02 * half) << isTraced;
+    EXPECT_NEAR((image.at(kFloorPixels / 2 - 1, 0).x + image.at(kFloorPixels / 2, 0).x) / 2.0, half, 0.02 * half)
+        << isTraced;
     // The ball's rims at x = -0.5 and 0.5, seen past the edge at half the height: shadow from -1/2 on, light from 1/2.
     EXPECT_EQ(image.at(0, 0).x, 0.0f);
-    EXPECT_NEAR(image.at(kWidth - 1, 0).x * kPi, std::pow(1.0 + std::pow(placeOf(kWidth - 1) / 4.0, 2.0), -1.5), 0.02);
+    EXPECT_NEAR(image.at(kFloorPixels - 1, 0).x * kPi,
+                std::pow(1.0 + std::pow(placeOf(kFloorPixels - 1) / 4.0, 2.0), -1.5), 0.02);
   }
 }
 
 TEST_F(RoundLights, LightsWithoutASizeHaveTheShadowsOfMaps) {
-  FloorScene scene(true);
+  HalfCoveredFloor scene(true);
   scene.sun = DirectionalLight{glm::normalize(glm::dvec3(0.1, -1.0, 0.0)), glm::vec3(1.0f)};
   scene.spots = {SpotLight{{0.5, 3.0, 0.2}, {0, -1, 0}, glm::vec3(3.0f, 1.0f, 1.0f), 0.9, 1.2}};
   scene.points = {PointLight{{-0.4, 1.2, 0.3}, glm::vec3(0.0f, 0.0f, 1.0f)}};
   for (int kind = 0; kind < 3; ++kind) {  // each alone, without the noise of choosing among them
-    FloorScene one = scene;
+    HalfCoveredFloor one = scene;
     if (kind != 0) one.sun.reset();
     if (kind != 1) one.spots.clear();
     if (kind != 2) one.points.clear();
     const Image maps = drawn(one, ShadowTransport::map, 1), rays = drawn(one, ShadowTransport::rays, 1),
                 paths = traced(one, 4);
     int alike = 0;
-    for (int x = 0; x < kWidth; ++x) {
+    for (int x = 0; x < kFloorPixels; ++x) {
       EXPECT_LT(glm::length(rays.at(x, 0) - paths.at(x, 0)), 1e-4f * glm::length(paths.at(x, 0)) + 1e-7f)
           << kind << " " << x;
       alike += glm::length(rays.at(x, 0) - maps.at(x, 0)) < 0.01f * glm::length(maps.at(x, 0)) + 1e-6f;
     }
-    EXPECT_GE(alike, kWidth - 3) << kind;  // but for the maps' filter, at the edge
+    EXPECT_GE(alike, kFloorPixels - 3) << kind;  // but for the maps' filter, at the edge
   }
 }
 
 TEST_F(RoundLights, ManyLampsHaveShadows) {
-  FloorScene scene(true);
+  HalfCoveredFloor scene(true);
   for (int i = 0; i < 140; ++i) scene.points.push_back({{-0.3 - 0.001 * i, 3.0, 0.0}, glm::vec3(1.0f)});
   const Image rays = drawn(scene, ShadowTransport::rays, 1), paths = traced(scene, 2048);
   // 63 of 140 have shadows; the others shine through.
-  const double lit = paths.at(kWidth - 1, 0).x, through = rays.at(0, 0).x / rays.at(kWidth - 1, 0).x;
-  EXPECT_NEAR(rays.at(kWidth - 1, 0).x / lit, 1.0, 0.03);
+  const double lit = paths.at(kFloorPixels - 1, 0).x, through = rays.at(0, 0).x / rays.at(kFloorPixels - 1, 0).x;
+  EXPECT_NEAR(rays.at(kFloorPixels - 1, 0).x / lit, 1.0, 0.03);
   EXPECT_EQ(paths.at(0, 0).x, 0.0f);
   EXPECT_LT(through, 0.75);
 }
