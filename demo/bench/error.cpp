@@ -72,6 +72,12 @@ std::vector<SweepPoint> pointsOf(const ErrorBenchOptions& options, const std::ve
   return points;
 }
 
+void addSampling(std::vector<std::string>& words, const ErrorBenchOptions& options) {
+  if (options.pixelSamples != PictureOptions::kPixelSamples)
+    words.insert(words.end(), {"--pixel-samples", std::to_string(options.pixelSamples)});
+  if (options.filter != "box") words.insert(words.end(), {"--filter", options.filter});
+}
+
 /// The command that repeats this measurement, except for --techniques and the folder.
 std::string benchCommand(const ErrorBenchOptions& options) {
   std::vector<std::string> words{"lucerna", "bench",      "error",    options.scene,
@@ -80,9 +86,7 @@ std::string benchCommand(const ErrorBenchOptions& options) {
   words.insert(words.end(), {"--budget", fmt::format("{:g}", options.budget)});
   if (options.referenceSamples > 0)
     words.insert(words.end(), {"--reference-spp", std::to_string(options.referenceSamples)});
-  if (options.pixelSamples != PictureOptions::kPixelSamples)
-    words.insert(words.end(), {"--pixel-samples", std::to_string(options.pixelSamples)});
-  if (options.filter != "box") words.insert(words.end(), {"--filter", options.filter});
+  addSampling(words, options);
   if (options.small) words.emplace_back("--small");
   if (options.deviations) words.emplace_back("--deviations");
   if (options.bounds) words.emplace_back("--bounds");
@@ -93,9 +97,7 @@ std::string benchCommand(const ErrorBenchOptions& options) {
 std::string pictureCommand(const ErrorBenchOptions& options) {
   std::vector<std::string> words{"lucerna", "render", options.scene, "--size", options.size};
   if (!options.camera.empty()) words.insert(words.end(), {"--camera", options.camera});
-  if (options.pixelSamples != PictureOptions::kPixelSamples)
-    words.insert(words.end(), {"--pixel-samples", std::to_string(options.pixelSamples)});
-  if (options.filter != "box") words.insert(words.end(), {"--filter", options.filter});
+  addSampling(words, options);
   return shellCommand(words);
 }
 

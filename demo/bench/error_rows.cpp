@@ -45,12 +45,12 @@ std::string fileStem(const std::string& name) {
 
 /// A picture's options as settings of a measuring renderer.
 RenderSettings settingsOf(const ErrorBench& bench, const PictureOptions& picture, Component component) {
-  RenderSettings settings = picture.parse();
+  PictureOptions own = picture;
+  own.usualSamples = bench.pixelSamples;  // a point may ask for others
+  RenderSettings settings = own.parse();
   settings.component = component;
   settings.size = bench.size;
   settings.filter = bench.filter;
-  if (settings.pixelSamples == PictureOptions::kPixelSamples)  // a point may ask for its own
-    settings.pixelSamples = bench.pixelSamples;
   settings.fullFloatTarget = true;
   settings.textures.anisotropy = 1.0f;  // anisotropic filtering differs between drivers
   settings.reuse = false;  // measure a picture's full cost, without savings in a still scene

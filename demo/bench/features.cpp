@@ -130,7 +130,7 @@ int runFeatures(FeaturesOptions options) {
   options.common.apply();
   options.picture.readSettingsFile();
   options.picture.usualSamples = 1;
-  RenderSettings settings = options.picture.parse();
+  const RenderSettings settings = options.picture.parse();
   if (options.scenes.empty()) options.scenes = {bench::sceneOrAtrium("")};
   const auto host = options.common.makeHost(false);
   const gl::Context context;

@@ -1,6 +1,7 @@
 #include "base/pixel_filter.hpp"
 
 #include "base/error.hpp"
+#include "base/radical_inverse.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,12 +20,6 @@ double sobolSecond(std::uint32_t index) {
   for (std::uint32_t direction = 0x80000000u; index != 0; index >>= 1, direction ^= direction >> 1)
     if (index & 1u) sum ^= direction;
   return sum * 0x1p-32;
-}
-
-double radicalInverse(std::uint32_t index) {
-  double sum = 0.0;
-  for (double digit = 0.5; index != 0; index >>= 1, digit *= 0.5) sum += digit * (index & 1u);
-  return sum;
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "irradiance_cache/emission_points.hpp"
 
 #include "base/angles.hpp"
+#include "base/radical_inverse.hpp"
 #include "base/error.hpp"
 #include "scene/texture_mean.hpp"
 
@@ -24,12 +25,6 @@ std::uint32_t spread3(std::uint32_t v) {
 std::uint32_t evenBits(std::uint32_t v) {
   std::uint32_t result = 0;
   for (std::uint32_t bit = 0; bit < 16; ++bit) result |= (v >> 2 * bit & 1u) << bit;
-  return result;
-}
-/// 1/2, 1/4, 3/4, 1/8 ... : the radical inverse to base 2.
-double radicalInverse(std::uint32_t i) {
-  double result = 0.0, digit = 0.5;
-  for (; i > 0; i >>= 1, digit *= 0.5) result += (i & 1u) != 0 ? digit : 0.0;
   return result;
 }
 

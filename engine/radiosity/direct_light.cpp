@@ -101,12 +101,30 @@ class BrightTexels {
   std::vector<double> sums_;  ///< of what the bright texels up to each give, row by row
 };
 
+/// A word for each ray of a batch, not empty, from a program that reads them.
+template <class T>
+std::vector<GLuint> answersOf(const std::string& name, const gl::Program& program, const RayScene& rays,
+                              const std::vector<T>& batch) {
+  const gl::Buffer in(name + " rays", batch.size() * sizeof(T), batch.data(), gl::Usage::streamDraw);
+  const gl::Buffer answers(name, batch.size() * sizeof(GLuint), nullptr, gl::Usage::dynamicRead);
+  {
+    const gl::ComputePass pass(name);
+    program.use();
+    program.set("rayCount", static_cast<int>(batch.size()));
+    rays.bind();
+    in.bindStorage(1);
+    answers.bindStorage(2);
+    pass.dispatch({static_cast<int>(batch.size()), 1, 1}, {64, 1, 1});
+  }
+  return answers.read<GLuint>();
+}
+
 /// Traces visibility rays, in submissions of limited size.
-class ShadowRays {
+class OcclusionRays {
  public:
   static constexpr std::size_t kEach = 1 << 16;
 
-  ShadowRays(gl::ProgramLibrary& programs, const RayScene& rays)
+  OcclusionRays(gl::ProgramLibrary& programs, const RayScene& rays)
       : program_(programs.loadCompute("direct light", "radiosity/blocked.comp",
                                       {{"ALPHA_MASKS", 0}, {"SHARED_STACK", rays.sharedStack()}})),
         rays_(rays) {}
@@ -114,18 +132,7 @@ class ShadowRays {
   /// Nonzero if occluded.
   std::vector<GLuint> blocked(const std::vector<Ray>& batch) const {
     if (batch.empty()) return {};
-    const gl::Buffer rayBuffer("direct light rays", batch.size() * sizeof(Ray), batch.data(), gl::Usage::streamDraw);
-    const gl::Buffer flags("direct light blocked", batch.size() * sizeof(GLuint), nullptr, gl::Usage::dynamicRead);
-    {
-      const gl::ComputePass pass("direct light");
-      program_.use();
-      program_.set("rayCount", static_cast<int>(batch.size()));
-      rays_.bind();
-      rayBuffer.bindStorage(1);
-      flags.bindStorage(2);
-      pass.dispatch({static_cast<int>(batch.size()), 1, 1}, {64, 1, 1});
-    }
-    return flags.read<GLuint>();
+    return answersOf("direct light", program_, rays_, batch);
   }
 
  private:
@@ -166,11 +173,11 @@ std::vector<glm::dvec3> directLight(gl::ProgramLibrary& programs, const RayScene
       static_cast<int>(std::sqrt(static_cast<double>(most) / static_cast<double>(lights * mesh.patches.size()))), 1, 4);
   const double beyond = 4.0 * mesh.extent;
   const std::vector<glm::dvec2> centroids = partCentroids(parts);
-  const ShadowRays shadowRays(programs, rays);
+  const OcclusionRays shadowRays(programs, rays);
 
   // Patches in runs whose rays fill one submission.
   const std::size_t raysOfPatch = static_cast<std::size_t>(parts * parts) * lights;
-  const std::size_t patchesEach = std::max<std::size_t>(ShadowRays::kEach / raysOfPatch, 1);
+  const std::size_t patchesEach = std::max<std::size_t>(OcclusionRays::kEach / raysOfPatch, 1);
   for (std::size_t first = 0; first < mesh.patches.size(); first += patchesEach) {
     std::vector<Ray> batch;
     struct Sample {
@@ -203,22 +210,11 @@ std::vector<std::uint32_t> backsMet(gl::ProgramLibrary& programs, const RayScene
   const gl::Program& program = programs.loadCompute("backs met", "radiosity/backs_met.comp",
                                                     {{"ALPHA_MASKS", 0}, {"SHARED_STACK", rays.sharedStack()}});
   std::vector<std::uint32_t> met;
-  for (std::size_t first = 0; first < segments.size(); first += ShadowRays::kEach) {
+  for (std::size_t first = 0; first < segments.size(); first += OcclusionRays::kEach) {
     std::vector<std::array<glm::vec4, 2>> batch;  // origins and directions
-    for (const Segment& s : segments.subspan(first, std::min(ShadowRays::kEach, segments.size() - first)))
+    for (const Segment& s : segments.subspan(first, std::min(OcclusionRays::kEach, segments.size() - first)))
       batch.push_back({glm::vec4(glm::vec3(s.from - rays.origin()), 0.0f), glm::vec4(glm::vec3(s.to - s.from), 0.0f)});
-    const gl::Buffer in("segments", batch.size() * sizeof batch[0], batch.data(), gl::Usage::streamDraw);
-    const gl::Buffer out("backs met", batch.size() * sizeof(GLuint), nullptr, gl::Usage::dynamicRead);
-    {
-      const gl::ComputePass pass("backs met");
-      program.use();
-      program.set("rayCount", static_cast<int>(batch.size()));
-      rays.bind();
-      in.bindStorage(1);
-      out.bindStorage(2);
-      pass.dispatch({static_cast<int>(batch.size()), 1, 1}, {64, 1, 1});
-    }
-    const std::vector<GLuint> read = out.read<GLuint>();
+    const std::vector<GLuint> read = answersOf("backs met", program, rays, batch);
     met.insert(met.end(), read.begin(), read.end());
   }
   return met;
@@ -247,14 +243,14 @@ std::vector<glm::dvec3> skyLight(gl::ProgramLibrary& programs, const RayScene& r
       std::clamp<std::size_t>(most / std::max<std::size_t>(mesh.patches.size(), 1), 64, 1024);
   const double beyond = 4.0 * mesh.extent;
   const std::vector<glm::dvec2> centroids = partCentroids(4);
-  const ShadowRays shadowRays(programs, rays);
+  const OcclusionRays shadowRays(programs, rays);
   const Environment& environment = *scene.environment;
   const glm::dvec3 factor(environment.radiance);
   std::optional<BrightTexels> bright;
   if (environment.picture) bright.emplace(environment);
   const std::size_t toTexels = bright && !bright->empty() ? raysOfPatch / 2 : 0, toAll = raysOfPatch - toTexels;
-  for (std::size_t first = 0; first < mesh.patches.size(); first += ShadowRays::kEach / raysOfPatch) {
-    const std::size_t end = std::min(first + ShadowRays::kEach / raysOfPatch, mesh.patches.size());
+  for (std::size_t first = 0; first < mesh.patches.size(); first += OcclusionRays::kEach / raysOfPatch) {
+    const std::size_t end = std::min(first + OcclusionRays::kEach / raysOfPatch, mesh.patches.size());
     std::vector<Ray> batch;
     std::vector<glm::dvec3> carried;  // irradiance
     for (std::size_t p = first; p < end; ++p) {

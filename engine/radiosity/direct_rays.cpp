@@ -3,6 +3,7 @@
 #include "base/angles.hpp"
 #include "gl/chunks.hpp"
 #include "radiosity/patches.hpp"
+#include "rays/light_table.hpp"
 #include "scene/texture_mean.hpp"
 
 #include <algorithm>
@@ -142,10 +143,7 @@ DirectRays::DirectRays(const Scene& scene, const gl::Capabilities& capabilities,
   }
   if (scene.sun)
     lights.push_back(
-        {vec(-scene.sun->direction, kSun),
-         {},
-         {},
-         vec(glm::dvec3(scene.sun->irradiance), 2.0 * std::pow(std::sin(0.25 * scene.sun->angularDiameter), 2.0))});
+        {vec(-scene.sun->direction, kSun), {}, {}, vec(glm::dvec3(scene.sun->irradiance), sunLessCosine(*scene.sun))});
   for (const SpotLight& l : scene.spots)
     lights.push_back({vec(l.position - origin, kSpot), vec(l.direction, std::cos(l.innerAngle)),
                       vec({}, std::cos(l.outerAngle)), vec(glm::dvec3(l.intensity), l.radius)});

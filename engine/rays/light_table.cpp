@@ -77,7 +77,7 @@ LightTable lightTable(const Scene& scene, const glm::dvec3& origin) {
     light.kind = PATH_LIGHT_SUN;
     light.b = glm::vec3(scene.sun->direction);
     light.c = scene.sun->irradiance;
-    light.size = static_cast<float>(2.0 * std::pow(std::sin(0.25 * scene.sun->angularDiameter), 2.0));
+    light.size = sunLessCosine(*scene.sun);
     add(light, worth(light.c) * disc);
   }
   for (const SpotLight& spot : scene.spots) {

@@ -8,6 +8,7 @@
 #include "scene/scene.hpp"
 #include "shared/path_tracer.h"
 
+#include <cmath>
 #include <vector>
 
 namespace lucerna {
@@ -20,6 +21,11 @@ struct AliasTable {
 };
 /// Weights finite and >= 0, at least one above 0; at most 2^32 - 1 of them.
 AliasTable aliasTable(const std::vector<double>& weights);
+
+/// 1 - cosine of half the sun's angular diameter, in full precision.
+inline float sunLessCosine(const DirectionalLight& sun) {
+  return static_cast<float>(2.0 * std::pow(std::sin(0.25 * sun.angularDiameter), 2.0));
+}
 
 struct LightTable {
   std::vector<shared::PathLight> lights;  ///< positions relative to `origin`; empty: no lights to sample

@@ -2,10 +2,9 @@
 
 #include "gl/chunks.hpp"
 #include "gl/pass.hpp"
+#include "rays/light_table.hpp"
 #include "rays/view_rays.hpp"
 #include "shared/bindings.h"
-
-#include <cmath>
 
 namespace lucerna {
 
@@ -69,8 +68,7 @@ void ShadowRays::record(const View& view) {
   program_->set("pixelSample", view.samples > 1 ? view.sample : -1);
   if (lights_.sun) {
     program_->set("sunDirection", glm::vec3(lights_.sun->direction));
-    program_->set("sunLessCosine",
-                  static_cast<float>(2.0 * std::pow(std::sin(0.25 * lights_.sun->angularDiameter), 2.0)));
+    program_->set("sunLessCosine", sunLessCosine(*lights_.sun));
   }
   const double iterations = (1.0 + lights_.lamps + (lights_.sun ? 1.0 : 0.0)) * gl::kIterationsOfRay;
   chunks_.forEach(picture, iterations, kShadowGroup, [&](glm::ivec2 corner, glm::ivec2 size) {

@@ -443,37 +443,29 @@ bool Renderer::isSettled() const {
 }
 
 void Renderer::renderSamples(const Camera& camera, const Camera& volumeCamera) {
+  drawSamples(camera, volumeCamera, {});
+}
+
+void Renderer::renderToTheEnd(const Camera& camera) { drawSamples(camera, camera, {true, false}); }
+
+// All samples of one picture, with all their light where the whole picture is asked for.
+void Renderer::drawSamples(const Camera& camera, const Camera& volumeCamera, FrameEffort effort) {
   beginView(camera, volumeCamera);
   antialiasing_.clear();
   const bool reuse = settings_.reuse;
   for (int sample = 0; sample < (accumulates() ? settings_.pixelSamples : 1); ++sample) {
     settings_.reuse = reuse || sample > 0;  // samples share what does not depend on the view
-    drawSample(sample, {});
-    if (accumulates()) antialiasing_.add(radiance_, noAttributes_);
-  }
-  settings_.reuse = reuse;
-  showMean();
-}
-
-void Renderer::renderToTheEnd(const Camera& camera) {
-  beginView(camera, camera);
-  antialiasing_.clear();
-  const bool reuse = settings_.reuse;
-  for (int sample = 0; sample < (accumulates() ? settings_.pixelSamples : 1); ++sample) {
-    settings_.reuse = reuse || sample > 0;
-    drawSample(sample, {true, false});
-    if (technique_) technique_->collect(true);
-    for (std::size_t frames = 0; technique_ && technique_->lacksLight(frames); ++frames) {
-      drawSample(sample, {false, false});
+    drawSample(sample, effort);
+    if (technique_ && effort.wholePicture) {
       technique_->collect(true);
+      for (std::size_t frames = 0; technique_->lacksLight(frames); ++frames) {
+        drawSample(sample, {false, effort.fadesIn});
+        technique_->collect(true);
+      }
     }
     if (accumulates()) antialiasing_.add(radiance_, noAttributes_);
   }
   settings_.reuse = reuse;
-  showMean();
-}
-
-void Renderer::showMean() {
   if (accumulates()) antialiasing_.writeMean(radianceTarget_, noAttributes_);
   shown_ = &radiance_;
   toneMap();

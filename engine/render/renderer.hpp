@@ -104,7 +104,7 @@ class Renderer {
   bool beginView(const Camera& camera, const Camera& volumeCamera);
   void drawSample(int sample, FrameEffort effort);
   void drawFrame(const FrameView& view, FrameEffort effort, bool viewIsNew);
-  void showMean();
+  void drawSamples(const Camera& camera, const Camera& volumeCamera, FrameEffort effort);
   void showAccumulated(int sample, bool moves);
   void toneMap();
   void endFrame();

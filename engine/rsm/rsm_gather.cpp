@@ -1,6 +1,7 @@
 #include "rsm/rsm_gather.hpp"
 
 #include "base/error.hpp"
+#include "base/radical_inverse.hpp"
 
 #include <fmt/core.h>
 
@@ -33,14 +34,6 @@ auto dispatcher(const gl::ComputePass& pass, const gl::Program& program) {
 }
 
 glm::ivec2 lowSize(glm::ivec2 size, int step) { return (size + step - 1) / step; }
-
-// Van der Corput's radical inverse in base 2.
-double radicalInverse(std::uint32_t i) {
-  double value = 0.0, digit = 0.5;
-  for (; i; i >>= 1, digit *= 0.5)
-    if (i & 1u) value += digit;
-  return value;
-}
 
 }  // namespace
 
