@@ -30,8 +30,8 @@ float spotShadowTent(float layer, vec3 uvz) {
                  spotShadowTap(vec4(uvz.xy + vec2(d, d), layer, uvz.z)));
 }
 
-// normal: for shading; meshNormal: the direction in which the shadow lookup is offset.
-Arriving spotLight(int i, vec3 position, vec3 normal, vec3 meshNormal) {
+// normal: for shading; lifted: where the shadow is looked up, with an offset along meshNormal.
+Arriving spotLight(int i, vec3 position, vec3 normal, vec3 lifted, vec3 meshNormal) {
   vec3 away = lights.spots[i].position - position;
   float distance2 = dot(away, away);
   Arriving result = Arriving(vec3(0.0), away * inversesqrt(max(distance2, kTouching)), 0.0);
@@ -41,7 +41,7 @@ Arriving spotLight(int i, vec3 position, vec3 normal, vec3 meshNormal) {
   if (result.cosine <= 0.0 || falloff <= 0.0) return result;
   float depth = -dot(away, lights.spots[i].direction);
   vec4 clip = lights.spots[i].clipFromPlace *
-              vec4(meshNormal * (kNormalOffset * lights.spots[i].shadowTexel * depth) - away, 1.0);
+              vec4(lifted - position + meshNormal * (kNormalOffset * lights.spots[i].shadowTexel * depth) - away, 1.0);
   float visible = clip.w > 0.0 ? spotShadowTent(float(i), 0.5 * clip.xyz / clip.w + 0.5) : 1.0;
   result.irradiance = lights.spots[i].intensity * (falloff * result.cosine / distance2 * visible);
   return result;
@@ -57,7 +57,7 @@ float pointShadowTap(int i, vec3 fromLight) {
   return texture(pointShadows, vec4(fromLight, float(i)), clamp(depth, 0.0, 1.0));
 }
 
-Arriving pointLight(int i, vec3 position, vec3 normal, vec3 meshNormal) {
+Arriving pointLight(int i, vec3 position, vec3 normal, vec3 lifted, vec3 meshNormal) {
   vec3 away = lights.points[i].position - position;
   float distance2 = dot(away, away);
   Arriving result = Arriving(vec3(0.0), away * inversesqrt(max(distance2, kTouching)), 0.0);
@@ -66,7 +66,7 @@ Arriving pointLight(int i, vec3 position, vec3 normal, vec3 meshNormal) {
   // Depth is measured along the face's axis, that of the largest component.
   vec3 size = abs(away);
   float texel = lights.points[i].shadowTexel * max(size.x, max(size.y, size.z));
-  vec3 fromLight = meshNormal * (kNormalOffset * texel) - away;
+  vec3 fromLight = lifted - position + meshNormal * (kNormalOffset * texel) - away;
   // Half a texel along the face's two axes. A tap beyond the face's edge is looked up in the neighbouring face, at the
   // depth measured along that face's axis.
   vec3 u = size.x >= size.y && size.x >= size.z ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);

@@ -20,6 +20,7 @@
 in vec3 vPosition;
 in vec3 vNormal;
 in vec2 vTexCoord;
+in float vTangentPlane;
 layout(location = 0) out vec4 radiance;
 
 #if SHADOW_RAYS
@@ -70,6 +71,14 @@ void add(inout vec3 result, vec3 radiance, int term) {
 #endif
 }
 
+// How high the surface bulges over its triangle along the mesh's normal, on the viewer's side: the mean of the planes
+// through the corners that are perpendicular to their normals [Hanika2021], as in rays/materials.glsl.
+float bulgeHeight() {
+  vec3 place = abs(vPosition);
+  float height = (vTangentPlane - dot(vNormal, vPosition)) * (gl_FrontFacing ? 1.0 : -1.0);
+  return height > 7.62939453125e-6 * max(place.x, max(place.y, place.z)) ? height : 0.0;
+}
+
 void main() {
   // The material, and the surface's normals.
   vec3 albedo = materialAlbedo(vTexCoord), mapped = materialNormal(vNormal, vPosition, vTexCoord);
@@ -92,6 +101,9 @@ void main() {
   // normal towards the viewer.
   vec3 meshNormal = normalize(gl_FrontFacing ? vNormal : -vNormal);
   vec3 normal = meshNormal;
+#if (SUN && !SHADOW_RAYS) || SPOTS || POINTS
+  vec3 lifted = vPosition + bulgeHeight() * meshNormal;  // where shadows are looked up
+#endif
 #if NORMAL_MAPS
   normal = normalize(gl_FrontFacing ? mapped : -mapped);
 #endif
@@ -105,7 +117,9 @@ void main() {
 #if SHADOW_RAYS
     float visible = lightVisibility(0);
 #else
-    float visible = sunVisibility(vPosition, face);
+    // A face turned away from the sun that is lit since it bulges has no plane in the sun's map.
+    if (lifted != vPosition && dot(face, frame.sunDirection) >= 0.0) face = meshNormal;
+    float visible = sunVisibility(lifted, face);
 #endif
     vec3 irradiance = frame.sunIrradiance * (cosine * visible);
 #if HAZE
@@ -116,14 +130,14 @@ void main() {
 #endif
 #if SPOTS
   for (int i = 0; i < SPOTS; ++i) {
-    Arriving light = spotLight(i, vPosition, normal, meshNormal);
+    Arriving light = spotLight(i, vPosition, normal, lifted, meshNormal);
     if (light.cosine > 0.0)
       add(result, reflection(albedo, normal, toCamera, light.toLight) * light.irradiance, INSPECTED_SPOTS + i);
   }
 #endif
 #if POINTS
   for (int i = 0; i < POINTS; ++i) {
-    Arriving light = pointLight(i, vPosition, normal, meshNormal);
+    Arriving light = pointLight(i, vPosition, normal, lifted, meshNormal);
     if (light.cosine > 0.0)
       add(result, reflection(albedo, normal, toCamera, light.toLight) * light.irradiance, INSPECTED_POINTS + i);
   }

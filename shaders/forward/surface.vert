@@ -7,10 +7,12 @@ layout(location = 2) in vec3 normal;
 out vec3 vPosition;
 out vec3 vNormal;
 out vec2 vTexCoord;
+out float vTangentPlane;  // where the plane through the vertex and perpendicular to its normal lies along that
 
 void main() {
   vPosition = position;
   vNormal = normal;
   vTexCoord = texCoord;
+  vTangentPlane = dot(normal, position);
   gl_Position = frame.clipFromWorld * vec4(position, 1.0);
 }

@@ -16,6 +16,7 @@ layout(std140, binding = BLOCK_CACHE_PATHS) uniform PathBlock { PathConstants tr
 #include "rays/bsdf.glsl"
 #include "rays/materials.glsl"
 #include "rays/bvh.glsl"
+#include "rays/shadow_start.glsl"
 #include "rays/environment.glsl"
 #if NEXT_EVENT
 #include "rays/lights.glsl"
@@ -69,13 +70,15 @@ struct Shadow {
   bool waits;
   vec3 light;  // added if nothing blocks it
   Ray ray;
+  uint skip;
 };
 
 #if NEXT_EVENT
 // Next-event estimation from a surface of reflectance `throughput` * pi over irradiance; scatterings: including this
 // one.
-Shadow queueShadowRay(Surface surface, vec3 throughput, uint scatterings, bool lampsAlone, PathNumbers numbers) {
-  Shadow shadow = Shadow(false, vec3(0.0), Ray(vec3(0.0), 0.0, vec3(1.0), 0.0));
+Shadow queueShadowRay(Surface surface, uint triangle, vec3 throughput, uint scatterings, bool lampsAlone,
+                      PathNumbers numbers) {
+  Shadow shadow = Shadow(false, vec3(0.0), Ray(vec3(0.0), 0.0, vec3(1.0), 0.0), kNoHit);
   LightSample light;
   if (!sampleLight(surface.position, randomPair(numbers, scatterings, kPurposeLight),
                    randomWords(numbers, scatterings, kPurposePick), light))
@@ -83,11 +86,16 @@ Shadow queueShadowRay(Surface surface, vec3 throughput, uint scatterings, bool l
   bool isLamp = light.pdf == 0.0;
   if (isLamp ? scatterings == 1u : lampsAlone) return shadow;
   float cosine = dot(light.direction, surface.normal);
-  if (!(cosine > 0.0 && dot(light.direction, surface.geometricNormal) > 0.0)) return shadow;
+  ShadowStart start =
+      isLamp ? shadowStart(surface, triangle)
+             : ShadowStart(offsetRay(surface.position, surface.geometricNormal, surface.magnitude),
+                           surface.geometricNormal, triangle);
+  if (!(cosine > 0.0 && dot(light.direction, start.normal) > 0.0)) return shadow;
   shadow.light = throughput * light.value * (cosine / kPi);
   if (!isLamp) shadow.light *= powerHeuristic(light.pdf, cosine / kPi);
-  vec3 start = offsetRay(surface.position, surface.geometricNormal, surface.magnitude);
-  shadow.ray = Ray(start, 0.0, light.infinite ? light.direction : light.end - start, light.infinite ? 3e38 : 1.0);
+  shadow.ray =
+      Ray(start.origin, 0.0, light.infinite ? light.direction : light.end - start.origin, light.infinite ? 3e38 : 1.0);
+  shadow.skip = start.skip;
   shadow.waits = any(notEqual(shadow.light, vec3(0.0)));
   return shadow;
 }
@@ -124,7 +132,7 @@ vec3 followPath(Surface surface, uint triangle, PathNumbers numbers) {
 #endif
 #if NEXT_EVENT
       if (counts(scatterings))
-        shadow = queueShadowRay(surface, throughput, scatterings, cached && keepsDirectLight(), numbers);
+        shadow = queueShadowRay(surface, triangle, throughput, scatterings, cached && keepsDirectLight(), numbers);
 #endif
       if (!ends) {
         vec3 direction = cosineSample(surface.normal, randomPair(numbers, scatterings, kPurposeScatter));
@@ -154,7 +162,7 @@ vec3 followPath(Surface surface, uint triangle, PathNumbers numbers) {
     bool isShadow = shadow.waits;
     Ray traced = ray;
     if (isShadow) traced = shadow.ray;
-    BvhTraversal traversal = beginRay(traced, triangle);
+    BvhTraversal traversal = beginRay(traced, isShadow ? shadow.skip : triangle);
     if (isShadow) traversal.lampEnd = traced.tMax;
     for (int left = bvhNodeCount(); left > 0 && !isDone(traversal); --left) advanceRay(traversal, isShadow);
     if (isShadow) {

@@ -12,6 +12,7 @@ layout(std140, binding = BLOCK_CACHE_PATHS) uniform PathBlock { PathConstants tr
 #include "pathtracer/fresnel.glsl"
 #include "rays/materials.glsl"
 #include "rays/bvh.glsl"
+#include "rays/shadow_start.glsl"
 #include "rays/environment.glsl"
 #include "lib/spot.glsl"
 #include "irradiance_cache/lookup.glsl"
@@ -34,6 +35,7 @@ bool counts(uint scatterings) { return scatterings >= tracer.minScatterings && s
 vec3 lampIrradiance(Surface surface, uint triangle) {
   vec3 sum = vec3(0.0);
 #if LAMPS
+  ShadowStart start = shadowStart(surface, triangle);
   for (int i = 0; i < lamps.length() && i < LAMPS; ++i) {
     PathLight lamp = lamps[i];
     bool infinite = lamp.kind == PATH_LIGHT_SUN;
@@ -43,10 +45,9 @@ vec3 lampIrradiance(Surface surface, uint triangle) {
     if (lamp.kind == PATH_LIGHT_SPOT)
       arriving *= spotFalloff(-dot(direction, lamp.b), uintBitsToFloat(lamp.p), uintBitsToFloat(lamp.q));
     float cosine = dot(direction, surface.normal);
-    if (!(cosine > 0.0 && dot(direction, surface.geometricNormal) > 0.0) || all(equal(arriving, vec3(0.0)))) continue;
-    vec3 start = offsetRay(surface.position, surface.geometricNormal, surface.magnitude);
-    Ray ray = infinite ? Ray(start, 0.0, direction, 3e38) : Ray(start, 0.0, lamp.a - start, 1.0);
-    if (!anyHitToLamp(ray, triangle)) sum += cosine * arriving;
+    if (!(cosine > 0.0 && dot(direction, start.normal) > 0.0) || all(equal(arriving, vec3(0.0)))) continue;
+    Ray ray = infinite ? Ray(start.origin, 0.0, direction, 3e38) : Ray(start.origin, 0.0, lamp.a - start.origin, 1.0);
+    if (!anyHitToLamp(ray, start.skip)) sum += cosine * arriving;
   }
 #endif
   return sum;

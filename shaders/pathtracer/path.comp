@@ -19,6 +19,7 @@ layout(std140, binding = 0) uniform PathBlock { PathConstants tracer; };
 #include "pathtracer/fresnel.glsl"
 #include "rays/materials.glsl"
 #include "rays/bvh.glsl"
+#include "rays/shadow_start.glsl"
 #include "rays/environment.glsl"
 #include "rays/lights.glsl"
 #include "rays/view.glsl"
@@ -51,6 +52,17 @@ void addNextEvent(Path path, Surface surface, uint triangle, Bsdf bsdf, float io
                    randomWords(numbers, path.event, kPurposePick), light))
     return;
   float side = dot(light.direction, surface.geometricNormal), pdf;
+  vec3 start = beside(surface, side > 0.0 ? surface.geometricNormal : -surface.geometricNormal);
+#if SMOOTH_NORMALS && !FIXED_EPSILON
+  if (light.pdf == 0.0 && bsdf.kind != PATH_DIELECTRIC) {
+    ShadowStart bulging = shadowStart(surface, triangle);
+    if (bulging.skip == kNoHit) {
+      side = dot(light.direction, bulging.normal);
+      start = bulging.origin;
+      triangle = kNoHit;
+    }
+  }
+#endif
   if (!(side * dot(light.direction, bsdf.normal) > 0.0)) return;
 #if ROUGH_DIELECTRICS
   if (bsdf.kind != PATH_DIELECTRIC && side < 0.0) return;
@@ -69,7 +81,6 @@ void addNextEvent(Path path, Surface surface, uint triangle, Bsdf bsdf, float io
   if (path.ior != 1.0) return;  // a straight line across a refracting boundary does not reach a lamp
 #endif
   if (all(equal(contribution, vec3(0.0)))) return;
-  vec3 start = beside(surface, side > 0.0 ? surface.geometricNormal : -surface.geometricNormal);
 #if MEDIA && !FIXED_EPSILON
   float head = gapAt(surface) / max(abs(side), 1e-4);
 #else

@@ -32,6 +32,9 @@ struct Surface {
   vec3 normal;           // for shading, unit; flipped together with the geometric one
   uint material;
   vec2 texCoord;
+#if SMOOTH_NORMALS
+  vec2 barycentrics;
+#endif
 };
 
 #if TEXTURES || ALPHA_MASKS
@@ -87,6 +90,9 @@ Surface surfaceAt(uint triangle, vec2 barycentrics, vec3 direction) {
   vec3 largest = max(abs(a), max(abs(b), abs(c)));
   surface.magnitude = max(largest.x, max(largest.y, largest.z));
   surface.material = words0.w;
+#if SMOOTH_NORMALS
+  surface.barycentrics = barycentrics;
+#endif
   vec3 normal = uintBitsToFloat(uvec3(words1.w, words2.w, triangleData[first + 3u].x));
   surface.front = dot(normal, direction) < 0.0;
   surface.geometricNormal = surface.front ? normal : -normal;

@@ -11,6 +11,7 @@ layout(std140, binding = BLOCK_CACHE_PATHS) uniform PathBlock { PathConstants tr
 #include "rays/bsdf.glsl"
 #include "rays/materials.glsl"
 #include "rays/bvh.glsl"
+#include "rays/shadow_start.glsl"
 #include "rays/view.glsl"
 #include "lib/round_light.glsl"
 #if WIDE
@@ -36,7 +37,7 @@ void main() {
   Hit hit = closestHit(view, kNoHit);
   if (hit.triangle != kNoHit) {
     Surface surface = surfaceAt(hit.triangle, hit.barycentrics, view.direction);
-    vec3 start = offsetRay(surface.position, surface.geometricNormal, surface.magnitude);
+    ShadowStart start = shadowStart(surface, hit.triangle);
     PathNumbers numbers = PathNumbers(uint(pixel.y * tracer.picture.x + pixel.x), uint(max(pixelSample, 0)), 0u);
     int count = SUN_RAYS + LAMPS;
     for (int i = 0; i < count; ++i) {
@@ -45,23 +46,23 @@ void main() {
       bool faces;
 #if SUN_RAYS
       if (i == 0) {
-        ray = Ray(start, 0.0, coneSample(-sunDirection, sunLessCosine, xi), 3e38);
-        faces = dot(ray.direction, surface.geometricNormal) > 0.0;
-        if (faces && !anyHit(ray, hit.triangle)) reached.x |= 1u;
+        ray = Ray(start.origin, 0.0, coneSample(-sunDirection, sunLessCosine, xi), 3e38);
+        faces = dot(ray.direction, start.normal) > 0.0;
+        if (faces && !anyHit(ray, start.skip)) reached.x |= 1u;
         continue;
       }
 #endif
 #if LAMPS
       PlainLamp lamp = lamps[i - SUN_RAYS];
-      vec3 away = lamp.position + drawnOrigin - start;
+      vec3 away = lamp.position + drawnOrigin - start.origin;
       float distance2 = max(dot(away, away), 1e-30);
       if (lamp.radius > 0.0) {
         vec3 direction =
             coneSample(away * inversesqrt(distance2), ballLessCosine(lamp.radius, distance2), xi);
         away = direction * distanceToBall(away, lamp.radius, direction);
       }
-      faces = dot(away, surface.geometricNormal) > 0.0;
-      if (faces && !anyHitToLamp(Ray(start, 0.0, away, 1.0), hit.triangle)) reached[i >> 5] |= 1u << (i & 31);
+      faces = dot(away + start.origin - surface.position, start.normal) > 0.0;
+      if (faces && !anyHitToLamp(Ray(start.origin, 0.0, away, 1.0), start.skip)) reached[i >> 5] |= 1u << (i & 31);
 #endif
     }
   }
