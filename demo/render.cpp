@@ -28,7 +28,8 @@ struct RenderOptions {
   CommonOptions common;
   PictureOptions picture;
   PathOptions path;
-  std::string scene, camera, output, inspected;
+  SceneAt scene;
+  std::string camera, output, inspected;
   int repeat = 1;
 };
 
@@ -53,7 +54,7 @@ int inspect(const RenderOptions& options) {
   settings.fullFloatTarget = true;
   chooseDirectLight(settings);
   const glm::ivec2 pixel = parsePixel(options.inspected, settings.size);
-  const Scene scene = loadScene(options.scene);
+  const Scene scene = options.scene.load();
   const Camera camera = chooseCamera(scene, options.camera);
   const auto host = options.common.makeHost(false);
   const gl::Context context;
@@ -92,7 +93,7 @@ int runRender(RenderOptions options) {
   chooseDirectLight(settings);
   if (!isWritableImageName(options.output))
     throwBadInput("-o {}: the extension must be png, hdr, exr or pfm", options.output);
-  Scene scene = loadScene(options.scene);
+  Scene scene = options.scene.load();
   const Camera camera = chooseCamera(scene, options.camera);
   setDefaultExposure(scene, camera);
 
@@ -127,7 +128,8 @@ int runRender(RenderOptions options) {
   nlohmann::ordered_json json;
   json["renderer"] = context.capabilities().renderer;
   json["host"] = nameOf(host->kind());
-  json["scene"] = options.scene;
+  json["scene"] = options.scene.file;
+  if (options.scene.time != 0.0) json["time"] = options.scene.time;
   json["technique"] = options.picture.technique;
   json["component"] = options.picture.component;
   json["fidelity"] = options.picture.fidelity;
@@ -170,10 +172,11 @@ int runRender(RenderOptions options) {
 
 Work addRender(Command app) {
   auto options = std::make_shared<RenderOptions>();
-  app.addOption("SCENE", options->scene, "a scene file: JSON, OBJ, glTF, PLY, ...").required();
+  app.addOption("SCENE", options->scene.file, "a scene file: JSON, OBJ, glTF, PLY, ...").required();
   app.addOption("--camera", options->camera, "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");
   app.addOption("-o,--output", options->output,
                 "OUT.{png,hdr,exr,pfm}; png is tone mapped, the others are linear; may be left out with --samples");
+  options->scene.declareTime(app);
   app.addOption("--repeat", options->repeat, "draw this many frames, for stage times").range(1, 100000).showDefault();
   app.addOption(
       "--inspect", options->inspected,

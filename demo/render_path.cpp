@@ -120,16 +120,17 @@ PathTracer::Settings tracerSettings(const PictureOptions& picture, const PathOpt
 }
 
 int renderPath(const CommonOptions& common, const PictureOptions& picture, const PathOptions& path,
-               const std::string& sceneFile, const std::string& cameraText, const std::string& output) {
+               const SceneAt& sceneFile, const std::string& cameraText, const std::string& output) {
   PictureOptions rest = picture;
-  if (!path.sizeGiven && (picture.fidelity != "corrected" || isOriginalScene(sceneFile))) rest.size = kPublishedSize;
+  if (!path.sizeGiven && (picture.fidelity != "corrected" || isOriginalScene(sceneFile.file)))
+    rest.size = kPublishedSize;
   const RenderSettings shared = rest.parse();
   const PathTracer::Settings settings = tracerSettings(picture, path, shared);
   const std::optional<SampleRange> part = sampleRange(path);
   if (output.empty() && !part) throwBadInput("--output is missing: the file for the picture");
   if (!output.empty() && !isWritableImageName(output))
     throwBadInput("-o {}: the extension must be png, hdr, exr or pfm", output);
-  Scene scene = loadScene(sceneFile);
+  Scene scene = sceneFile.load();
   const Camera camera = chooseCamera(scene, cameraText);
   setDefaultExposure(scene, camera);
 
@@ -221,7 +222,8 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   nlohmann::ordered_json json;
   json["renderer"] = context.capabilities().renderer;
   json["host"] = nameOf(host->kind());
-  json["scene"] = sceneFile;
+  json["scene"] = sceneFile.file;
+  if (sceneFile.time != 0.0) json["time"] = sceneFile.time;
   json["technique"] = "path";
   json["component"] = picture.component;
   json["fidelity"] = picture.fidelity;

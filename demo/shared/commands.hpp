@@ -71,6 +71,15 @@ struct PictureOptions {
   std::string impliedTechnique() const;
 };
 
+/// A scene file at a time.
+struct SceneAt {
+  std::string file;
+  double time = 0.0;  ///< --time, seconds
+
+  void declareTime(Command app);
+  Scene load() const;
+};
+
 /// "640x360" with both from 1 to 16384; throws Error(badInput) naming the option.
 glm::ivec2 parseSize(const std::string& text);
 

@@ -1,6 +1,7 @@
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "base/log.hpp"
+#include "scene/motion.hpp"
 #include "render/techniques.hpp"
 #include "shared/commands.hpp"
 #include "shared/completions.hpp"
@@ -101,6 +102,12 @@ void PictureOptions::declare(Command app) {
                 "a settings file, as written by `lucerna tune`; other options here override it");
   app.setFooter(settingsHelp() + deviationsHelp());
 }
+
+void SceneAt::declareTime(Command app) {
+  app.addOption("--time", time, "seconds at which a scene that moves is shown").range(-1e12, 1e12).showDefault();
+}
+
+Scene SceneAt::load() const { return loadScene(file, time); }
 
 void PictureOptions::readSettingsFile() {
   if (!settingsFile.empty()) addSettingsFile();

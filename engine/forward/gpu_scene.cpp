@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "gl/draw.hpp"
 #include "scene/coat.hpp"
+#include "scene/motion.hpp"
 #include "shared/bindings.h"
 #include "shared/coat.h"
 
@@ -88,29 +89,21 @@ GpuScene::GpuScene(const Scene& scene, const SceneFeatures& features, const gl::
 
   // Materials, with the textures that the scene needs.
   for (const Material& material : scene.materials) {
-    const bool isCoated = hasCoat(material), isSmooth = !isCoated && material.bsdf != Bsdf::diffuse;
-    Surface surface{isCoated && material.bsdf == Bsdf::conductor ? glm::vec3(0.0f) : material.diffuse,
-                    material.bsdf == Bsdf::dielectric ? glm::vec3(0.0f) : material.specular, material.emission,
-                    isSmooth ? 0.0f : std::max(material.roughness, static_cast<float>(COAT_LEAST_ALPHA))};
+    Surface surface{};
+    setValues(surface, material);
     if (features.diffuseTextures && material.diffuseTexture >= 0)
       surface.diffuseTexture = upload(material.diffuseTexture, kColour);
     surface.masked = features.alphaMasks && material.alphaMasked;
     if (surface.masked)
       surface.maskTexture = upload(material.alphaTexture >= 0 ? material.alphaTexture : material.diffuseTexture, kMask);
-    if (features.emissionTextures && material.emissionTexture >= 0) {
-      surface.emission = material.emissionScale;
+    if (features.emissionTextures && material.emissionTexture >= 0)
       surface.emissionTexture = upload(material.emissionTexture, kColour);
-    }
     if (features.normalMaps && material.normalTexture >= 0) {
       surface.normalScale = material.normalScale;
       surface.normalTexture = upload(material.normalTexture, kLinear);
     }
-    if (material.metalMap) {
-      surface.diffuse = material.metalMap->base;
-      surface.metallic = material.metalMap->metallic;
-      surface.roughness = material.metalMap->roughness;
-      if (material.metalMap->texture >= 0) surface.metalTexture = upload(material.metalMap->texture, kLinear);
-    }
+    if (material.metalMap && material.metalMap->texture >= 0)
+      surface.metalTexture = upload(material.metalMap->texture, kLinear);
     surfaces_.push_back(surface);
   }
   if (features.specular) {
@@ -150,6 +143,36 @@ GpuScene::GpuScene(const Scene& scene, const SceneFeatures& features, const gl::
                          gl::Usage::staticDraw);
   if (indices.empty()) throwBadInput("{}: nothing but boundaries of media", scene.file.string());
   uploadIndices("scene", indices, all_);
+}
+
+void GpuScene::setValues(Surface& surface, const Material& material) const {
+  const bool isCoated = hasCoat(material), isSmooth = !isCoated && material.bsdf != Bsdf::diffuse;
+  surface.diffuse = isCoated && material.bsdf == Bsdf::conductor ? glm::vec3(0.0f) : material.diffuse;
+  surface.specular = material.bsdf == Bsdf::dielectric ? glm::vec3(0.0f) : material.specular;
+  surface.emission =
+      features_.emissionTextures && material.emissionTexture >= 0 ? material.emissionScale : material.emission;
+  surface.alpha = isSmooth ? 0.0f : std::max(material.roughness, static_cast<float>(COAT_LEAST_ALPHA));
+  if (!material.metalMap) return;
+  surface.diffuse = material.metalMap->base;
+  surface.metallic = material.metalMap->metallic;
+  surface.roughness = material.metalMap->roughness;
+}
+
+void GpuScene::update(const std::vector<std::size_t>& meshes) {
+  for (std::size_t i = 0; i < surfaces_.size(); ++i) setValues(surfaces_[i], scene_->materials[i]);
+  for (const std::size_t index : meshes) {
+    const Mesh& mesh = scene_->meshes[index];
+    const VertexRange range = vertexRange(*scene_, mesh);
+    vertices_.upload(range.first * sizeof(Vertex), range.count * sizeof(Vertex), &scene_->vertices[range.first]);
+    for (std::vector<Draw>* draws : {&all_.opaque_, &all_.masked_})
+      for (Draw& draw : *draws) {
+        if (draw.firstInScene != mesh.firstIndex) continue;
+        draw.centre = glm::vec3(mesh.bounds.centre());
+        draw.halfExtent = glm::vec3(0.5 * mesh.bounds.extent());
+        all_.indices_.upload(draw.firstIndex * sizeof(std::uint32_t), mesh.indexCount * sizeof(std::uint32_t),
+                             &scene_->indices[mesh.firstIndex]);
+      }
+  }
 }
 
 void GpuScene::uploadIndices(const std::string& name, const std::vector<std::uint32_t>& indices, Selection& to) const {

@@ -69,6 +69,9 @@ class GpuScene {
   /// Whether that takes less time than to draw all: where the CPU transforms vertices, and triangles outnumber texels.
   bool isSelectionWorthwhile(int size) const;
 
+  /// The scene's vertices and faces of these meshes, and what its materials' textures do not say, are others.
+  void update(const std::vector<std::size_t>& meshes);
+
   const Scene& scene() const { return *scene_; }
   const SceneFeatures& features() const { return features_; }
   std::size_t gpuBytes() const;
@@ -85,6 +88,7 @@ class GpuScene {
   using Draw = Selection::Draw;
   /// Makes buffer and vertex array of `to`, whose draws are known.
   void uploadIndices(const std::string& name, const std::vector<std::uint32_t>& indices, Selection& to) const;
+  void setValues(Surface& surface, const Material& material) const;
   void drawRange(const Draw& draw) const;
   void bindSurface(const gl::Program& program, const Surface& surface) const;
 

@@ -35,11 +35,43 @@ std::uint32_t kindOf(const Material& material) {
 
 PathScene::PathScene(const Scene& scene, const SceneFeatures& features, const gl::Capabilities& capabilities,
                      const Settings& settings, const std::vector<int>& rankOfMaterial)
-    : features_(features), rays_(scene, capabilities, settings.rays) {
-  std::vector<shared::PathMaterial> materials(scene.materials.size());
-  for (std::size_t i = 0; i < materials.size(); ++i) {
+    : features_(features),
+      settings_(settings),
+      capabilities_(&capabilities),
+      rankOfMaterial_(rankOfMaterial),
+      rays_(scene, capabilities, settings.rays),
+      materialValues_(scene.materials.size()) {
+  for (shared::PathMaterial& material : materialValues_)
+    for (shared::PathTexture* texture : {&material.diffuseTexture, &material.maskTexture, &material.emissionTexture,
+                                         &material.normalTexture, &material.metalTexture})
+      texture->layer = PATH_NO_TEXTURE;
+  setMaterials(scene);
+  if (hasCoats_) {
+    coats_.emplace("path coats", gl::Format::rgba32f, glm::ivec2(COAT_COSINES, COAT_ALPHAS),
+                   gl::Sampling{gl::Filter::linear, gl::Filter::linear});
+    coats_->upload(gl::Texels::rgbaFloat, coatTable().data());
+  }
+  isTextured_ = features_.diffuseTextures || features_.alphaMasks || features_.emissionTextures ||
+                features_.normalMaps || features_.metalMaps;
+  if (isTextured_) uploadTextures(scene);
+  triangleWords_ = 4 + (isTextured_ ? 1 : 0) + (features_.smoothNormals ? 3 : 0);
+  uploadRest(scene);
+}
+
+void PathScene::update(const Scene& scene, bool verticesMoved) {
+  CHECK(scene.materials.size() == materialValues_.size(), "{} materials of {}", scene.materials.size(),
+        materialValues_.size());
+  if (verticesMoved) rays_.update(scene);
+  setMaterials(scene);
+  hash_ = {};
+  uploadRest(scene);
+}
+
+// All but the pictures.
+void PathScene::setMaterials(const Scene& scene) {
+  for (std::size_t i = 0; i < materialValues_.size(); ++i) {
     const Material& from = scene.materials[i];
-    shared::PathMaterial& to = materials[i];
+    shared::PathMaterial& to = materialValues_[i];
     to.kind = kindOf(from);
     to.albedo = from.diffuse;
     to.specular = from.specular;
@@ -51,41 +83,32 @@ PathScene::PathScene(const Scene& scene, const SceneFeatures& features, const gl
       to.roughness = std::max(to.roughness, static_cast<float>(COAT_LEAST_ALPHA));
       hasCoats_ = true;
     }
-    if (settings.diffuseOnly && (to.kind == PATH_MIRROR || to.kind == PATH_CONDUCTOR)) {
+    if (settings_.diffuseOnly && (to.kind == PATH_MIRROR || to.kind == PATH_CONDUCTOR)) {
       to.albedo = glm::vec3(0.0f);
       hasCoats_ = true;
     }
     if (to.kind == PATH_DIELECTRIC) to.specular = glm::vec3(0.0f);
     to.emission = from.emissionTexture >= 0 ? from.emissionScale : from.emission;
     to.ior = from.ior;
-    to.boundary = static_cast<std::uint32_t>(rankOfMaterial.empty() ? -1 : rankOfMaterial[i]);
+    to.boundary = static_cast<std::uint32_t>(rankOfMaterial_.empty() ? -1 : rankOfMaterial_[i]);
     to.normalScale = from.normalScale;
     to.metallic = from.metalMap ? from.metalMap->metallic : -1.0f;
     if (from.metalMap) to.albedo = from.metalMap->base;
-    to.diffuseTexture.layer = to.maskTexture.layer = to.emissionTexture.layer = to.normalTexture.layer =
-        to.metalTexture.layer = PATH_NO_TEXTURE;
   }
-  if (hasCoats_) {
-    coats_.emplace("path coats", gl::Format::rgba32f, glm::ivec2(COAT_COSINES, COAT_ALPHAS),
-                   gl::Sampling{gl::Filter::linear, gl::Filter::linear});
-    coats_->upload(gl::Texels::rgbaFloat, coatTable().data());
-  }
-  const bool textured = features_.diffuseTextures || features_.alphaMasks || features_.emissionTextures ||
-                        features_.normalMaps || features_.metalMaps;
-  if (textured) uploadTextures(scene, capabilities, materials);
+}
 
+void PathScene::uploadRest(const Scene& scene) {
   std::vector<float> pickDensity;
-  if (settings.nextEvent) {
+  if (settings_.nextEvent) {
     const LightTable table = lightTable(scene, rays_.origin());
     pickDensity = table.pickDensity;
     lightCount_ = table.lights.size();
-    if (lightCount_ > 0) lights_ = storageOf("path lights", table.lights, capabilities);
+    if (lightCount_ > 0) lights_ = storageOf("path lights", table.lights, *capabilities_);
     constants_.environmentPick = static_cast<float>(table.environmentPick);
   }
-  hash_.bytes(materials.data(), materials.size() * sizeof(shared::PathMaterial));
-  materials_ = storageOf("path materials", materials, capabilities);
-  triangleWords_ = 4 + (textured ? 1 : 0) + (features_.smoothNormals ? 3 : 0);
-  uploadTriangles(scene, capabilities, textured, pickDensity);
+  hash_.bytes(materialValues_.data(), materialValues_.size() * sizeof(shared::PathMaterial));
+  materials_ = storageOf("path materials", materialValues_, *capabilities_);
+  uploadTriangles(scene, pickDensity);
   if (features_.environment) uploadEnvironment(*scene.environment);
 }
 
@@ -181,8 +204,8 @@ std::optional<gl::Texture> makeAtlas(const Scene& scene, const gl::Capabilities&
 
 }  // namespace
 
-void PathScene::uploadTextures(const Scene& scene, const gl::Capabilities& capabilities,
-                               std::vector<shared::PathMaterial>& materials) {
+void PathScene::uploadTextures(const Scene& scene) {
+  std::vector<shared::PathMaterial>& materials = materialValues_;
   AtlasContent colours, values;
   for (std::size_t i = 0; i < materials.size(); ++i) {
     const Material& material = scene.materials[i];
@@ -198,12 +221,11 @@ void PathScene::uploadTextures(const Scene& scene, const gl::Capabilities& capab
     if (features_.metalMaps && material.metalMap && material.metalMap->texture >= 0)
       values.add(material.metalMap->texture, false, materials[i].metalTexture);
   }
-  atlas_ = makeAtlas(scene, capabilities, "texture atlas", gl::Format::srgb8Alpha8, colours);
-  values_ = makeAtlas(scene, capabilities, "value atlas", gl::Format::rgba8, values);
+  atlas_ = makeAtlas(scene, *capabilities_, "texture atlas", gl::Format::srgb8Alpha8, colours);
+  values_ = makeAtlas(scene, *capabilities_, "value atlas", gl::Format::rgba8, values);
 }
 
-void PathScene::uploadTriangles(const Scene& scene, const gl::Capabilities& capabilities, bool textured,
-                                const std::vector<float>& pickDensity) {
+void PathScene::uploadTriangles(const Scene& scene, const std::vector<float>& pickDensity) {
   std::vector<std::uint32_t> words;
   words.reserve(scene.triangleCount() * static_cast<std::size_t>(triangleWords_) * 4);
   std::vector<std::uint32_t> materialOf(scene.triangleCount(), 0);
@@ -228,13 +250,13 @@ void PathScene::uploadTriangles(const Scene& scene, const gl::Capabilities& capa
     add(normal.y);
     add3({normal.z, corners[2]->texCoord.x, corners[2]->texCoord.y});
     add(pickDensity.empty() ? 0.0f : pickDensity[t]);
-    if (textured)
+    if (isTextured_)
       for (int k = 0; k < 2; ++k) add(corners[k]->texCoord.x), add(corners[k]->texCoord.y);
     if (features_.smoothNormals)
       for (const Vertex* corner : corners) add3(corner->normal), words.push_back(0);
   }
   hash_.bytes(words.data(), words.size() * sizeof(std::uint32_t));
-  triangles_ = storageOf("path triangles", words, capabilities);
+  triangles_ = storageOf("path triangles", words, *capabilities_);
 }
 
 void PathScene::bind() const {

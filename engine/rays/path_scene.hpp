@@ -48,6 +48,10 @@ class PathScene {
   PathScene(const Scene& scene, const SceneFeatures& features, const gl::Capabilities& capabilities,
             const Settings& settings, const std::vector<int>& rankOfMaterial = {});
 
+  /// The same scene with other vertices, lights, materials and environment, but for their pictures: as a new one, whose
+  /// features and counts must be the same. RaySceneSettings::moves must be set if vertices are others.
+  void update(const Scene& scene, bool verticesMoved);
+
   /// Storage blocks 2, 3, 4; texture units 0, 1, 2, 4, 60, 61, 62, 63.
   void bind() const;
   /// Flags for the shaders named above.
@@ -62,14 +66,19 @@ class PathScene {
   std::size_t gpuBytes() const;
 
  private:
-  void uploadTextures(const Scene& scene, const gl::Capabilities& capabilities,
-                      std::vector<shared::PathMaterial>& materials);
-  void uploadTriangles(const Scene& scene, const gl::Capabilities& capabilities, bool textured,
-                       const std::vector<float>& pickDensity);
+  void setMaterials(const Scene& scene);
+  void uploadTextures(const Scene& scene);
+  void uploadRest(const Scene& scene);
+  void uploadTriangles(const Scene& scene, const std::vector<float>& pickDensity);
   void uploadEnvironment(const Environment& environment);
 
   SceneFeatures features_;
+  Settings settings_;
+  const gl::Capabilities* capabilities_;
+  std::vector<int> rankOfMaterial_;
   RayScene rays_;
+  std::vector<shared::PathMaterial> materialValues_;
+  bool isTextured_ = false;
   int triangleWords_ = 4;
   std::size_t lightCount_ = 0;
   shared::PathConstants constants_{};

@@ -4,6 +4,7 @@
 #include "gl/pass.hpp"
 #include "rays/light_table.hpp"
 #include "rays/view_rays.hpp"
+#include "scene/motion.hpp"
 #include "shared/bindings.h"
 
 namespace lucerna {
@@ -28,10 +29,17 @@ Scene surfacesOf(Scene scene) {
 const PathScene& TracedScene::get() {
   if (scene_) return *scene_;
   const SceneFeatures features = analyse(*source_);
-  const PathScene::Settings settings{true, true, {}};
+  PathScene::Settings settings{true, true, {}};
+  settings.rays.moves = source_->motion && !source_->motion->meshes.empty();
   if (features.nullBoundaries) scene_.emplace(surfacesOf(*source_), features, *capabilities_, settings);
   else scene_.emplace(*source_, features, *capabilities_, settings);
   return *scene_;
+}
+
+void TracedScene::update(bool verticesMoved) {
+  if (!scene_) return;
+  if (analyse(*source_).nullBoundaries) scene_->update(surfacesOf(*source_), verticesMoved);
+  else scene_->update(*source_, verticesMoved);
 }
 
 ShadowRays::ShadowRays(gl::ProgramLibrary& programs, const PathScene& scene, const glm::dvec3& origin,

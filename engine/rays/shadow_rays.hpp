@@ -20,6 +20,8 @@ class TracedScene {
   TracedScene(const Scene& scene, const gl::Capabilities& capabilities)
       : source_(&scene), capabilities_(&capabilities) {}
   const PathScene& get();
+  /// The scene has changed; its features are the same.
+  void update(bool verticesMoved);
   std::size_t gpuBytes() const { return scene_ ? scene_->gpuBytes() : 0; }
 
  private:

@@ -84,7 +84,6 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
       antialiasing_(programs) {
   allocateTargets();
   const TechniqueEntry& technique = techniqueNamed(settings.technique);
-  const bool isNeeded = technique.isNeeded(settings_, features_);
   if (!technique.drawsSurfaces) {
     technique_ = technique.make(parts(context, programs, scene));
     geometry_ = dynamic_cast<GeometryTechnique*>(technique_.get());
@@ -99,6 +98,13 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
   gpuScene_.emplace(geometry_ ? geometry_->geometry() : aboutOrigin(scene), features_, context.capabilities(),
                     settings_.textures);
   if (moved_) moved_->textures.clear();  // they are on the GPU now
+  makeLights(context, programs, scene);
+  warnOfWhatIsLeftOut(technique);
+}
+
+// What depends on the lights and on where surfaces stand; programs are those of the library.
+void Renderer::makeLights(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene) {
+  const TechniqueEntry& technique = techniqueNamed(settings_.technique);
   const Scene& drawn = gpuScene_->scene();
   if (scene.sun) sunFrustum_ = fitSunFrustum(drawn, scene.sun->direction);
   spots_ = spotViews(drawn);
@@ -113,12 +119,44 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
       std::ranges::move(keepMostImportant(programs, *gpuScene_, *lamps, most), std::back_inserter(plainLamps_));
   }
   if (showsDirect()) makeShadowMaps(programs);
-  if (technique.drawsSurfaces && isNeeded) technique_ = technique.make(parts(context, programs, scene));
-  if (EnvironmentView::isNeeded(features_) && settings.component != Component::indirect)
+  if (technique.drawsSurfaces && technique.isNeeded(settings_, features_))
+    technique_ = technique.make(parts(context, programs, scene));
+  if (EnvironmentView::isNeeded(features_) && settings_.component != Component::indirect)
     environmentView_.emplace(programs, scene);
   loadPrograms(programs);
+}
 
-  warnOfWhatIsLeftOut(technique);
+bool Renderer::follow(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
+                      const SceneChange& change) {
+  if (!change.any()) return true;
+  sceneExposure_ = scene.exposure;
+  exposure_ = settings_.exposure.value_or(sceneExposure_);
+  if (geometry_ || !(analyse(scene) == features_) || floatingOrigin(scene.bounds) != origin_) return false;
+  view_.reset();
+  antialiasing_.forget();
+  const bool movesCamerasAlone = change.meshes.empty() && !change.anyLight() && !change.materials && !change.media;
+  if (movesCamerasAlone) return true;
+  if (picture_) {
+    technique_ = techniqueNamed(settings_.technique).make(parts(context, programs, scene));
+    picture_ = dynamic_cast<PictureTechnique*>(technique_.get());
+    return true;
+  }
+  if (moved_) {
+    Scene next = movedTo(scene, origin_);
+    next.textures.clear();
+    *moved_ = std::move(next);
+  }
+  gpuScene_->update(change.meshes);
+  traced_.update(!change.meshes.empty());
+  technique_.reset();
+  plainLamps_.clear();
+  shadowRays_.reset();
+  localLights_.reset();
+  sunShadow_.reset();
+  shadowsMade_ = false;
+  environmentView_.reset();
+  makeLights(context, programs, scene);
+  return true;
 }
 
 void Renderer::warnOfWhatIsLeftOut(const TechniqueEntry& technique) const {

@@ -20,6 +20,7 @@
 #include "gl/time_query.hpp"
 #include "rays/shadow_rays.hpp"
 #include "scene/features.hpp"
+#include "scene/motion.hpp"
 #include "shared/frame.h"
 
 #include <cstdint>
@@ -72,6 +73,10 @@ class Renderer {
   void resize(glm::ivec2 size);
   /// Applies the settings whose cost is SettingCost::uniform; others need a new Renderer.
   void apply(const RenderSettings& settings);
+  /// The scene that it was made of is posed at another time (scene/motion.hpp): textures and programs are kept, the
+  /// rest is made anew as far as the change asks for. False: a new Renderer is needed, as other features are, or the
+  /// technique draws geometry of its own.
+  bool follow(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const SceneChange& change);
   void setExposure(float exposure) { exposure_ = exposure; }
   float exposure() const { return exposure_; }
 
@@ -97,6 +102,7 @@ class Renderer {
  private:
   const Scene& aboutOrigin(const Scene& scene);  ///< makes moved_ if it must be moved
   FrameParts parts(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene);
+  void makeLights(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene);
   void makeShadowMaps(gl::ProgramLibrary& programs);
   void loadPrograms(gl::ProgramLibrary& programs);
   void allocateTargets();

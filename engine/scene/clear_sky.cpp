@@ -124,4 +124,35 @@ Image clearSkyPicture(const ClearSky& sky, const DirectionalLight& sun, int heig
   return picture;
 }
 
+glm::dvec3 directionToSun(double latitude, double day, double hour) {
+  const double declination = 0.4093 * std::sin(2.0 * kPi * (day - 81.0) / 368.0),
+               hourAngle = kPi * (hour - 12.0) / 12.0;
+  const double l = latitude * kDegree;
+  const double up = std::sin(l) * std::sin(declination) + std::cos(l) * std::cos(declination) * std::cos(hourAngle);
+  const double north = std::cos(l) * std::sin(declination) - std::sin(l) * std::cos(declination) * std::cos(hourAngle);
+  const double east = -std::cos(declination) * std::sin(hourAngle);
+  return glm::normalize(glm::dvec3(east, up, -north));
+}
+
+glm::vec3 sunThroughAir(double turbidity, const glm::dvec3& toSun, const glm::vec3& outside) {
+  if (!(toSun.y > 0.0)) return glm::vec3(0.0f);
+  const glm::dvec3 wavelengths(0.61, 0.55, 0.465);  // micrometres, of sRGB's primaries
+  const double mass = airMass(std::acos(std::min(toSun.y, 1.0))), haze = 0.04608 * turbidity - 0.04586;
+  glm::dvec3 through;
+  for (int c = 0; c < 3; ++c)
+    through[c] = std::exp(-mass * (0.008735 * std::pow(wavelengths[c], -4.08) + haze * std::pow(wavelengths[c], -1.3)));
+  return outside * glm::vec3(through);
+}
+
+Image skyOfDay(const ClearSky& sky, const glm::dvec3& toSun, const glm::vec3& outside, int height) {
+  const double depression = std::max(0.0, -std::asin(std::clamp(toSun.y, -1.0, 1.0))) / kDegree;
+  glm::dvec3 above(toSun.x, std::max(toSun.y, 0.0), toSun.z);
+  above = glm::length(above) > 0.0 ? glm::normalize(above) : glm::dvec3(1.0, 0.0, 0.0);
+  const double zenith = std::acos(std::min(above.y, 1.0));
+  // The picture is in proportion to the sun's light as [Navvab1984] has it.
+  const double light = glm::dot(glm::dvec3(outside), kLuminance) * sunIlluminance(sky.turbidity, zenith) /
+                       kSolarIlluminance * std::exp(-depression / 1.3);
+  return clearSkyPicture(sky, {-above, glm::vec3(static_cast<float>(light))}, height);
+}
+
 }  // namespace lucerna

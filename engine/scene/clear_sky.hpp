@@ -49,4 +49,16 @@ double skyIlluminance(double turbidity, double zenithAngle);
 /// out of range.
 Image clearSkyPicture(const ClearSky& sky, const DirectionalLight& sun, int height = 256);
 
+/// The unit vector to the sun: +x is east, -z north. Latitude in degrees, north positive; day of the year from 1; hour
+/// of solar time, 0 to 24 (12: the sun is highest). Declination and hour angle as in [Preetham1999, A.6].
+glm::dvec3 directionToSun(double latitude, double day, double hour);
+
+/// What the air lets through of the sun's rays, across them: scattered by air, absorbed and scattered by haze
+/// [Preetham1999, A.1], at three wavelengths. 0 below the horizon. `outside`: above the air.
+glm::vec3 sunThroughAir(double turbidity, const glm::dvec3& toSun, const glm::vec3& outside);
+
+/// The sky for such a sun, also below the horizon: twilight is the sky at sunset, darker by a factor of e every 1.3
+/// degrees (illuminances of 400 lx at sunset and 3.4 lx at -6 degrees [Seidelmann1992]).
+Image skyOfDay(const ClearSky& sky, const glm::dvec3& toSun, const glm::vec3& outside, int height = 128);
+
 }  // namespace lucerna

@@ -21,22 +21,38 @@ using Json = nlohmann::json;
 /// Of radiance, irradiance and intensity. With more, sums of light would leave the range of floats.
 constexpr double kMostLight = 1e30;
 
-/// A value and its path, such as "cameras[1].fov", for messages.
+struct Value;
+/// What a curve (scene/curve.hpp) is at the time of its Value. Throws Error(badInput) if it is none.
+Json valueAt(const Value& value);
+
+/// A value and its path, such as "cameras[1].fov", for messages. Numbers and arrays of numbers may be curves: then they
+/// are what the curve is at `time`.
 struct Value {
   const Json& json;
   const std::filesystem::path& file;
   std::string key;
+  double time = 0.0;  ///< seconds
+
+  bool isCurve() const { return json.is_object() && json.contains("times"); }
+
+  /// Reads the value of a curve at the time.
+  template <class Read>
+  auto now(const Read& read) const {
+    const Json value = valueAt(*this);
+    return read(Value{value, file, fmt::format("{} at {:g} s", key, time), time});
+  }
 
   [[noreturn]] void fail(std::string_view expected) const {
     std::string found = json.dump(-1, ' ', false, Json::error_handler_t::replace);
     if (found.size() > 60) found = found.substr(0, 57) + "...";
-    throwBadInput("{}: key \"{}\": found {}, expected {}", file.string(), key, found, expected);
+    throwBadInput("{}: key \"{}\"{}: found {}, expected {}", file.string(), key,
+                  isCurve() ? fmt::format(" at {:g} s", time) : "", found, expected);
   }
 
   Value at(std::string_view name) const {
-    return {json.at(std::string(name)), file, key.empty() ? std::string(name) : fmt::format("{}.{}", key, name)};
+    return {json.at(std::string(name)), file, key.empty() ? std::string(name) : fmt::format("{}.{}", key, name), time};
   }
-  Value at(std::size_t index) const { return {json.at(index), file, fmt::format("{}[{}]", key, index)}; }
+  Value at(std::size_t index) const { return {json.at(index), file, fmt::format("{}[{}]", key, index), time}; }
   bool has(std::string_view name) const { return json.contains(std::string(name)); }
 
   std::string text() const {
@@ -45,6 +61,7 @@ struct Value {
   }
 
   double number(std::string_view expected = "a number") const {
+    if (isCurve()) return now([&](const Value& v) { return v.number(expected); });
     if (!json.is_number() || !std::isfinite(json.get<double>())) fail(expected);
     return json.get<double>();
   }
@@ -56,6 +73,7 @@ struct Value {
   }
 
   glm::dvec3 vector(std::string_view expected = "an array of 3 numbers") const {
+    if (isCurve()) return now([&](const Value& v) { return v.vector(expected); });
     if (!json.is_array() || json.size() != 3) fail(expected);
     glm::dvec3 v;
     for (std::size_t i = 0; i < 3; ++i) v[static_cast<int>(i)] = at(i).number();

@@ -29,9 +29,15 @@ struct VertexHash {
 };
 static_assert(sizeof(Vertex) == 8 * sizeof(float), "compared bit by bit, so without padding");
 
-}  // namespace
+/// A mesh in the scene's space.
+struct PlacedMesh {
+  std::vector<Vertex> vertices;  ///< as the source has them
+  std::vector<std::array<unsigned, 3>> triangles;
+  std::size_t dropped = 0, degenerate = 0;
+};
 
-void appendMesh(Scene& scene, const MeshData& source, const glm::dmat4& worldFromNode, int material) {
+PlacedMesh placed(const MeshData& source, const glm::dmat4& worldFromNode) {
+  PlacedMesh result;
   const glm::dmat3 linear(worldFromNode);
   const bool mirrored = glm::determinant(linear) < 0.0;
   // Normals transform by the inverse transpose. The cofactor matrix is that times the determinant, and also exists for
@@ -40,7 +46,8 @@ void appendMesh(Scene& scene, const MeshData& source, const glm::dmat4& worldFro
                             glm::cross(linear[0], linear[1]));
 
   // Vertices in world space.
-  std::vector<Vertex> vertices(source.positions.size());
+  std::vector<Vertex>& vertices = result.vertices;
+  vertices.resize(source.positions.size());
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     Vertex& vertex = vertices[i];
     vertex.position = glm::vec3(worldFromNode * glm::dvec4(source.positions[i], 1.0));
@@ -53,7 +60,7 @@ void appendMesh(Scene& scene, const MeshData& source, const glm::dmat4& worldFro
   }
 
   // Triangles, and the normals that they lend, area-weighted, to vertices that have none.
-  std::vector<std::array<unsigned, 3>> triangles;
+  std::vector<std::array<unsigned, 3>>& triangles = result.triangles;
   triangles.reserve(source.triangles.size());
   std::vector<glm::dvec3> lentNormals(vertices.size(), glm::dvec3(0.0));
   double agreement = 0.0;  // area-weighted agreement of faces' sides with vertices' normals
@@ -63,15 +70,15 @@ void appendMesh(Scene& scene, const MeshData& source, const glm::dmat4& worldFro
     const glm::dvec3 cross = glm::cross(b - a, c - a);
     const double longest2 = std::max({glm::dot(b - a, b - a), glm::dot(c - a, c - a), glm::dot(c - b, c - b)});
     if (!isFinite(a) || !isFinite(b) || !isFinite(c)) {
-      ++scene.droppedTriangles;
+      ++result.dropped;
       continue;
     }
     // Exact up to rounding in double: collinear float corners give 0, or 1e-16 of the longest side squared.
-    if (!(glm::length(cross) > 1e-14 * longest2)) ++scene.degenerateTriangles;
+    if (!(glm::length(cross) > 1e-14 * longest2)) ++result.degenerate;
     for (const unsigned i : t) lentNormals[i] += cross, agreement += glm::dot(cross, glm::dvec3(vertices[i].normal));
     triangles.push_back(t);
   }
-  if (triangles.empty()) return;
+  if (triangles.empty()) return result;
   // A mesh whose faces are wound against its normals was written for another handedness. Its author judged the normals,
   // so faces follow them, as shading turns normals to the viewer by the side of the face.
   if (agreement < 0.0) {
@@ -83,28 +90,60 @@ void appendMesh(Scene& scene, const MeshData& source, const glm::dmat4& worldFro
     if (vertices[i].normal == glm::vec3(0.0f))
       vertices[i].normal = length > 0.0 ? glm::vec3(lentNormals[i] / length) : glm::vec3(0.0f, 1.0f, 0.0f);
   }
+  return result;
+}
+
+}  // namespace
+
+void replaceMesh(Scene& scene, std::size_t index, const MeshData& source, const glm::dmat4& worldFromNode) {
+  const PlacedMesh mesh = placed(source, worldFromNode);
+  const Mesh& to = scene.meshes[index];
+  const std::uint32_t first =
+      *std::min_element(scene.indices.begin() + to.firstIndex, scene.indices.begin() + to.firstIndex + to.indexCount);
+  if (3 * mesh.triangles.size() == to.indexCount)
+    for (std::size_t i = 0; i < to.indexCount; ++i)
+      scene.indices[to.firstIndex + i] = first + mesh.triangles[i / 3][i % 3];
+  std::copy(mesh.vertices.begin(), mesh.vertices.end(), scene.vertices.begin() + first);
+}
+
+void appendMesh(Scene& scene, const MeshData& source, const glm::dmat4& worldFromNode, int material,
+                SharedVertices shared) {
+  const auto [vertices, triangles, dropped, degenerate] = placed(source, worldFromNode);
+  scene.droppedTriangles += dropped;
+  scene.degenerateTriangles += degenerate;
+  if (triangles.empty()) return;
 
   // Indices of merged vertices.
   Mesh mesh;
   mesh.name = source.name;
   mesh.material = material;
   mesh.firstIndex = static_cast<std::uint32_t>(scene.indices.size());
+  const auto firstVertex = static_cast<std::uint32_t>(scene.vertices.size());
+  if (shared == SharedVertices::no) {
+    scene.vertices.insert(scene.vertices.end(), vertices.begin(), vertices.end());
+    for (const std::array<unsigned, 3>& t : triangles)
+      for (const unsigned i : t) {
+        scene.indices.push_back(firstVertex + i);
+        mesh.bounds.add(glm::dvec3(vertices[i].position));
+      }
+  }
   std::unordered_map<std::array<std::uint32_t, 8>, std::uint32_t, VertexHash> joined;
   joined.reserve(triangles.size());
-  for (const std::array<unsigned, 3>& t : triangles) {
-    for (const unsigned i : t) {
-      const Vertex& vertex = vertices[i];
-      const auto next = static_cast<std::uint32_t>(scene.vertices.size());
-      std::array<std::uint32_t, 8> bits;
-      std::memcpy(bits.data(), &vertex, sizeof vertex);
-      const auto [entry, isNew] = joined.try_emplace(bits, next);
-      if (isNew) {
-        scene.vertices.push_back(vertex);
-        mesh.bounds.add(glm::dvec3(vertex.position));
+  if (shared == SharedVertices::yes)
+    for (const std::array<unsigned, 3>& t : triangles) {
+      for (const unsigned i : t) {
+        const Vertex& vertex = vertices[i];
+        const auto next = static_cast<std::uint32_t>(scene.vertices.size());
+        std::array<std::uint32_t, 8> bits;
+        std::memcpy(bits.data(), &vertex, sizeof vertex);
+        const auto [entry, isNew] = joined.try_emplace(bits, next);
+        if (isNew) {
+          scene.vertices.push_back(vertex);
+          mesh.bounds.add(glm::dvec3(vertex.position));
+        }
+        scene.indices.push_back(entry->second);
       }
-      scene.indices.push_back(entry->second);
     }
-  }
   mesh.indexCount = static_cast<std::uint32_t>(scene.indices.size()) - mesh.firstIndex;
   scene.bounds.add(mesh.bounds);
   scene.meshes.push_back(std::move(mesh));

@@ -82,8 +82,14 @@ struct MeshData {
   std::vector<std::array<unsigned, 3>> triangles;
 };
 
-/// Appends one mesh as placed by one node.
-void appendMesh(Scene& scene, const MeshData& source, const glm::dmat4& worldFromNode, int material);
+/// Appends one mesh as placed by one node. Vertices that are equal become one, unless the mesh moves: then it has those
+/// of `source`.
+enum class SharedVertices { yes, no };
+void appendMesh(Scene& scene, const MeshData& source, const glm::dmat4& worldFromNode, int material,
+                SharedVertices shared = SharedVertices::yes);
+
+/// Vertices and faces of a mesh that was appended without shared vertices, of another pose of the same source.
+void replaceMesh(Scene& scene, std::size_t mesh, const MeshData& source, const glm::dmat4& worldFromNode);
 
 /// `radiance`: where the picture is white; texture -1: none.
 void setEmission(Material& material, const glm::vec3& radiance, int texture, const TextureLoader& textures);
@@ -97,17 +103,23 @@ struct ModelLight {
   glm::vec3 colour{0.0f};
   float attenuation = 1.0f;  ///< quadratic
   double innerAngle = 0.0, outerAngle = 0.0;  ///< of a spot, from its axis
+  std::size_t node = 0;  ///< of glTF files
 };
 
-void appendLights(Scene& scene, std::span<const ModelLight> lights);
+/// Returns where each has become one of the scene's: of those of its kind; -1: ignored.
+std::vector<int> appendLights(Scene& scene, std::span<const ModelLight> lights);
 
-/// Cameras whose directions need not be unit or perpendicular.
-void appendCameras(Scene& scene, std::span<const Camera> cameras);
+/// Cameras whose directions need not be unit or perpendicular. Returns the places of those that are kept, -1 otherwise.
+std::vector<int> appendCameras(Scene& scene, std::span<const Camera> cameras);
 
 /// What a reader returns once it has appended the meshes and their materials.
 struct ModelViews {
   std::vector<ModelLight> lights;
   std::vector<Camera> cameras;
+  // Of animated glTF files:
+  std::vector<std::size_t> cameraNodes{};  ///< one a camera
+  std::function<glm::dmat4(std::size_t node, double seconds)> worldFromNode{};
+  std::function<bool(std::size_t node)> moves{};
 };
 
 /// Readers of formats. `content`: of scene.file.

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -162,6 +163,8 @@ struct Environment {
   double rotation = 0.0;  ///< about +y, radians
 };
 
+struct SceneMotion;
+
 struct Scene {
   std::string name;  ///< file stem
   std::filesystem::path file;  ///< the loaded file
@@ -186,6 +189,8 @@ struct Scene {
   float exposure = 1.0f;  ///< multiplies radiance before tone mapping
   bool defaultExposure = false;  ///< no file has one: it is chosen for the view (setDefaultExposure)
   std::filesystem::path keyFrames;  ///< the walk's camera path; empty: none named
+  std::shared_ptr<SceneMotion> motion;  ///< scene/motion.hpp; null: nothing moves
+  double time = 0.0;  ///< at which it is posed, seconds
   std::size_t degenerateTriangles = 0;  ///< of zero area, kept so that counts agree with the file's: code that divides
                                         ///< by an area or normalises a face normal must expect them
   std::size_t droppedTriangles = 0;  ///< left out while loading: a position is not finite

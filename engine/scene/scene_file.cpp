@@ -6,7 +6,9 @@
 //                  "fov": vertical, degrees}
 //   "cameras":     an array of such, each with a "name"; instead of "camera"
 //   "sun":         {"direction": [x,y,z] along which the light travels, "irradiance": [r,g,b],
-//                  "angularDiameter": of its disc, degrees (0.53)}, or null for none
+//                  "angularDiameter": of its disc, degrees (0.53)}, or null for none; instead of "direction" a place
+//                  and a time: "latitude", degrees, "day" of the year (172), "hour" of solar time (12 is noon), "+x"
+//                  east and "-z" north; "irradiance" is then above the air, which dims and reddens it ("turbidity", 3)
 //   "spots":       [{"position": [x,y,z], "direction": [x,y,z] or "target": [x,y,z],
 //                   "intensity": [r,g,b] on the axis, W/sr,
 //                   "innerAngle", "outerAngle": half angles of the cone, degrees; SpotLight has the formula,
@@ -22,9 +24,13 @@
 //                      "radiance": a factor (1)}: a clear sky for the sun's position, which must be above the horizon
 //                  (scene/clear_sky.hpp); or null for none. Without the key, the default sun has its clear sky.
 //   "media", "materials", "cameraMedium": see scene_media.hpp
-// Places are in the model's coordinates, also where an offset is taken off those (Scene::origin).
-// A top-level key "scene" marks the JSON of the VPT original instead: see original_scene_file.cpp.
-// Unknown keys are errors. A new key is one more entry in the table in loadSceneFile.
+//   "objects":     {NAME of a mesh of the model: {"translation": [x,y,z], "turn": {"axis": [x,y,z], "degrees"},
+//                   "scale": a number or [x,y,z], "pivot": [x,y,z] about which it is turned and scaled (0,0,0)}}
+// What moves: in cameras, sun, spots, points, background, exposure, environment, media, materials and objects a number
+// or an array of numbers may be a curve, {"times": [...], "values": [...]} (scene/curve.hpp). Places are in the model's
+// coordinates, also where an offset is taken off those (Scene::origin). A top-level key "scene" marks the JSON of the
+// VPT original instead: see original_scene_file.cpp. Unknown keys are errors. A new key is one more entry in the table
+// in loadSceneFile.
 #include "scene/scene_file.hpp"
 
 #include "base/angles.hpp"
@@ -33,12 +39,21 @@
 #include "base/json.hpp"
 #include "base/log.hpp"
 #include "scene/clear_sky.hpp"
+#include "scene/curve.hpp"
 #include "scene/json_value.hpp"
+#include "scene/motion.hpp"
 #include "scene/original_scene_file.hpp"
 #include "scene/scene_media.hpp"
 
+#include <fmt/ranges.h>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include <algorithm>
 #include <cmath>
+#include <map>
+#include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -92,18 +107,46 @@ std::vector<Camera> readCameras(const Value& array) {
   return cameras;
 }
 
-DirectionalLight readSun(const Value& object) {
+/// A sun, and its light above the air where its place is given by latitude, day and hour.
+struct Sun {
+  DirectionalLight light;
+  double turbidity = 3.0;
+  std::optional<glm::vec3> outside;
+};
+
+Sun readSun(const Value& object) {
   std::optional<glm::dvec3> direction;
   std::optional<glm::vec3> irradiance;
-  double diameter = kSunDiameter;
-  readObject(object, {
-                         {"direction", [&](const Value& v) { direction = v.unitVector(); }},
-                         {"irradiance", [&](const Value& v) { irradiance = v.light(); }},
-                         {"angularDiameter", [&](const Value& v) { diameter = v.number("degrees") * kDegree; }},
-                     });
+  std::optional<double> latitude, hour;
+  double diameter = kSunDiameter, day = 172.0;
+  Sun sun;
+  readObject(
+      object,
+      {
+          {"direction", [&](const Value& v) { direction = v.unitVector(); }},
+          {"irradiance", [&](const Value& v) { irradiance = v.light(); }},
+          {"angularDiameter", [&](const Value& v) { diameter = v.number("degrees") * kDegree; }},
+          {"latitude", [&](const Value& v) { latitude = v.numberBetween(-90.0, 90.0, "degrees from -90 to 90"); }},
+          {"day", [&](const Value& v) { day = v.numberBetween(1.0, 366.0, "a day from 1 to 366"); }},
+          {"hour", [&](const Value& v) { hour = v.number("hours"); }},
+          {"turbidity",
+           [&](const Value& v) {
+             sun.turbidity =
+                 v.numberBetween(ClearSky::kLeastTurbidity, ClearSky::kMostTurbidity, "a turbidity from 1.7 to 10");
+           }},
+      });
+  if (latitude && hour && !direction) {
+    const glm::dvec3 toSun = directionToSun(*latitude, day, *hour);
+    direction = -toSun;
+    sun.outside = irradiance;
+    if (irradiance) irradiance = sunThroughAir(sun.turbidity, toSun, *irradiance);
+  } else if (latitude || hour || object.has("day") || object.has("turbidity")) {
+    object.fail("a sun with either \"direction\", or \"latitude\" and \"hour\" (with \"day\", \"turbidity\")");
+  }
   if (!direction || !irradiance) object.fail("a sun with \"direction\" and \"irradiance\"");
   if (!(diameter >= 0.0 && diameter <= 90.0 * kDegree)) object.at("angularDiameter").fail("degrees from 0 to 90");
-  return {*direction, *irradiance, diameter};
+  sun.light = {*direction, *irradiance, diameter};
+  return sun;
 }
 
 /// The radius of a lamp's ball.
@@ -181,8 +224,9 @@ bool checkRadiance(const Image& picture, const std::filesystem::path& file, cons
   return lights;
 }
 
-ClearSky readSky(const Value& object) {
+ClearSky readSky(const Value& object, double turbidity) {
   ClearSky sky;
+  sky.turbidity = turbidity;
   readObject(object,
              {
                  {"turbidity",
@@ -195,31 +239,176 @@ ClearSky readSky(const Value& object) {
   return sky;
 }
 
-Environment readEnvironment(const Value& object, const std::optional<DirectionalLight>& sun) {
+/// `known`: its picture, where it has been read before.
+Environment readEnvironment(const Value& object, const std::optional<Sun>& sun, const Image* known = nullptr) {
   Environment environment;
   std::optional<glm::vec3> radiance;
   std::optional<ClearSky> sky;
   std::filesystem::path file;
-  readObject(object,
-             {
-                 {"radiance", [&](const Value& v) { radiance = v.light(); }},
-                 {"picture", [&](const Value& v) { environment.picture = readImage(file = v.path()); }},
-                 {"sky", [&](const Value& v) { sky = readSky(v); }},
-                 {"rotation", [&](const Value& v) { environment.rotation = v.number("degrees") * kPi / 180.0; }},
-             });
+  readObject(
+      object,
+      {
+          {"radiance", [&](const Value& v) { radiance = v.light(); }},
+          {"picture", [&](const Value& v) { environment.picture = known ? *known : readImage(file = v.path()); }},
+          {"sky", [&](const Value& v) { sky = readSky(v, sun ? sun->turbidity : 3.0); }},
+          {"rotation", [&](const Value& v) { environment.rotation = v.number("degrees") * kPi / 180.0; }},
+      });
   if (!radiance && !environment.picture && !sky)
     object.fail("an environment with \"radiance\", \"picture\" or \"sky\"");
   environment.radiance = radiance.value_or(glm::vec3(1.0f));
   if (sky) {
     if (environment.picture || object.has("rotation"))
       object.fail("a \"sky\" without \"picture\" and \"rotation\": the sun determines its orientation");
-    if (!sun || !(sun->direction.y <= 0.0)) object.at("sky").fail("a scene with a sun above the horizon, for its sky");
-    environment.picture = clearSkyPicture(*sky, *sun);
+    if (!sun || !(sun->outside || sun->light.direction.y <= 0.0))
+      object.at("sky").fail("a scene with a sun above the horizon, for its sky");
+    environment.picture =
+        sun->outside ? skyOfDay(*sky, -sun->light.direction, *sun->outside) : clearSkyPicture(*sky, sun->light);
     file = object.file;
   }
-  if (environment.picture && !checkRadiance(*environment.picture, file, environment.radiance))
+  if (environment.picture && !known && !sun.value_or(Sun{}).outside &&
+      !checkRadiance(*environment.picture, file, environment.radiance))
     logWarning("{}: the environment is black: it lights nothing", file.string());
   return environment;
+}
+
+/// Each object's matrix, by the model's mesh.
+std::map<std::size_t, glm::dmat4> readObjects(const Value& objects, const Scene& scene) {
+  if (!objects.json.is_object()) objects.fail("an object {\"mesh\": {...}}");
+  std::map<std::size_t, glm::dmat4> matrices;
+  for (const auto& [name, json] : objects.json.items()) {
+    const Value object = objects.at(name);
+    glm::dvec3 translation(0.0), scale(1.0), pivot(0.0), axis(0.0, 1.0, 0.0);
+    double degrees = 0.0;
+    readObject(object, {{"translation", [&](const Value& v) { translation = v.vector(); }},
+                        {"turn",
+                         [&](const Value& v) {
+                           readObject(v, {{"axis", [&](const Value& a) { axis = a.unitVector(); }},
+                                          {"degrees", [&](const Value& d) { degrees = d.number("degrees"); }}});
+                           if (!v.has("axis") || !v.has("degrees")) v.fail("a turn with \"axis\" and \"degrees\"");
+                         }},
+                        {"scale",
+                         [&](const Value& v) {
+                           const Json& sample = v.isCurve() ? v.json.at("values") : v.json;
+                           const bool isVector = v.isCurve()
+                                                     ? sample.is_array() && !sample.empty() && sample[0].is_array()
+                                                     : sample.is_array();
+                           scale = isVector ? v.vector("a factor, or an array of 3") : glm::dvec3(v.number("a factor"));
+                         }},
+                        {"pivot", [&](const Value& v) { pivot = v.vector(); }}});
+    pivot -= scene.origin;
+    glm::dmat4 matrix = glm::translate(glm::dmat4(1.0), translation + pivot);
+    matrix = glm::rotate(matrix, degrees * kDegree, axis);
+    matrix = glm::translate(glm::scale(matrix, scale), -pivot);
+    bool found = false;
+    for (std::size_t i = 0; i < scene.meshes.size(); ++i)
+      if (scene.meshes[i].name == name) matrices[i] = matrix, found = true;
+    if (!found) {
+      std::set<std::string> names;
+      for (const Mesh& mesh : scene.meshes)
+        if (names.size() < 12) names.insert(fmt::format("'{}'", mesh.name));
+      object.fail(fmt::format("the name of a mesh of the model, of which it has {} ({}{})", scene.meshes.size(),
+                              fmt::join(names, ", "), names.size() < 12 ? "" : ", ..."));
+    }
+  }
+  return matrices;
+}
+
+/// A scene's JSON, whose parts are read as they are at a time.
+struct SceneJson {
+  Json json;
+  std::filesystem::path file;
+  std::optional<double> millimetresPerUnit;
+  std::vector<Material> materials;  ///< the model's own
+  std::vector<Medium> media;
+
+  Value root(double seconds) const { return {json, file, "", seconds}; }
+  bool has(const char* key) const { return json.contains(key) && !json.at(key).is_null(); }
+  bool moves(const char* key) const { return json.contains(key) && !keyTimesIn(json.at(key)).empty(); }
+
+  std::optional<Sun> sunAt(double seconds) const {
+    return has("sun") ? std::optional(readSun(root(seconds).at("sun"))) : std::nullopt;
+  }
+  /// The file's sun, or else the scene's.
+  std::optional<Sun> sunOf(const Scene& scene, double seconds) const {
+    if (has("sun")) return sunAt(seconds);
+    return scene.sun ? std::optional(Sun{*scene.sun, 3.0, {}}) : std::nullopt;
+  }
+  template <class Light>
+  std::vector<Light> lightsAt(const char* key, Light (*read)(const Value&), const Scene& scene, double seconds) const {
+    std::vector<Light> lights = readLights(root(seconds).at(key), read);
+    for (Light& light : lights) light.position -= scene.origin;
+    return lights;
+  }
+  std::vector<Camera> camerasAt(const Scene& scene, double seconds) const {
+    const Value at = root(seconds);
+    std::vector<Camera> cameras =
+        at.has("camera") ? std::vector{readCamera(at.at("camera"))} : readCameras(at.at("cameras"));
+    for (Camera& camera : cameras) camera.position -= scene.origin;
+    return cameras;
+  }
+  void setMedia(Scene& scene, double seconds) const {
+    scene.materials = materials;
+    scene.media = media;
+    scene.cameraMedium = -1;
+    readSceneMedia(root(seconds), millimetresPerUnit, scene);
+  }
+};
+
+/// What its curves move.
+void addMotion(const std::shared_ptr<const SceneJson>& json, Scene& scene) {
+  using Part = SceneMotion::Part;
+  const auto add = [&](Part part, const char* name, SceneMotion::Pose pose) {
+    SceneMotion& motion = motionOf(scene);
+    motion[part] = std::move(pose);
+    motion.names.emplace_back(name);
+  };
+  const std::vector<double> times = keyTimesIn(json->json);
+  for (const char* key : {"model", "scale", "description", "keyFrames", "cameraMedium"})
+    if (json->moves(key)) json->root(0.0).at(key).fail("something that does not move");
+  if (json->moves("objects")) {
+    const Value objects = json->root(0.0).at("objects");
+    for (const auto& [mesh, matrix] : readObjects(objects, scene))
+      if (!keyTimesIn(objects.json.at(scene.meshes[mesh].name)).empty()) motionOf(scene).meshes.push_back(mesh);
+    add(Part::objects, "objects", [json](Scene& posed, double t) {
+      for (const auto& [mesh, matrix] : readObjects(json->root(t).at("objects"), posed))
+        if (std::ranges::binary_search(posed.motion->meshes, mesh)) transformMesh(posed, posed.meshes[mesh], matrix);
+    });
+  }
+  if (json->moves("sun")) add(Part::sun, "sun", [json](Scene& posed, double t) { posed.sun = json->sunAt(t)->light; });
+  if (json->moves("spots"))
+    add(Part::spots, "spots",
+        [json](Scene& posed, double t) { posed.spots = json->lightsAt("spots", readSpot, posed, t); });
+  if (json->moves("points"))
+    add(Part::points, "points",
+        [json](Scene& posed, double t) { posed.points = json->lightsAt("points", readPoint, posed, t); });
+  if (json->moves("materials") || json->moves("media"))
+    add(Part::media, "materials", [json](Scene& posed, double t) { json->setMedia(posed, t); });
+  const bool followsSun =
+      json->moves("sun") && json->has("environment") && json->json.at("environment").contains("sky");
+  if (json->moves("environment") || followsSun)
+    add(Part::environment, "environment", [json, followsSun](Scene& posed, double t) {
+      const bool isKnown = !followsSun && posed.environment && posed.environment->picture;
+      posed.environment = readEnvironment(json->root(t).at("environment"), json->sunOf(posed, t),
+                                          isKnown ? &*posed.environment->picture : nullptr);
+    });
+  const bool viewMoves = json->moves("camera") || json->moves("cameras");
+  if (viewMoves || json->moves("exposure") || json->moves("background"))
+    add(Part::views, "views", [json, viewMoves](Scene& posed, double t) {
+      if (viewMoves) posed.cameras = json->camerasAt(posed, t);
+      if (json->moves("exposure")) posed.exposure = static_cast<float>(json->root(t).at("exposure").positiveNumber());
+      if (json->moves("background")) posed.background = json->root(t).at("background").light();
+    });
+  if (!scene.motion || times.empty()) return;
+  SceneMotion& motion = *scene.motion;
+  motion.end = std::max(motion.end, times.back());
+  // A value that is out of range is found now, not when its time has come.
+  for (const double t : times)
+    for (const Part part : {Part::sun, Part::spots, Part::points, Part::media, Part::views})
+      if (motion[part]) motion[part](scene, t);
+  for (const double t : times)
+    if (json->moves("objects")) readObjects(json->root(t).at("objects"), scene);
+  if (followsSun && !json->sunAt(0.0)->outside)
+    for (const double t : times) readEnvironment(json->root(t).at("environment"), json->sunAt(t));
 }
 
 }  // namespace
@@ -227,38 +416,36 @@ Environment readEnvironment(const Value& object, const std::optional<Directional
 Json readJson(const std::filesystem::path& file) { return parseJson(readFileText(file), file.string()); }
 
 Scene loadSceneFile(const std::filesystem::path& file) {
-  const Json json = readJson(file);
-  const Value root{json, file, ""};
-  if (!json.is_object()) throwBadInput("{}: expected a JSON object with the key \"model\"", file.string());
+  const auto json = std::make_shared<SceneJson>();
+  json->json = readJson(file);
+  json->file = file;
+  const Value root = json->root(0.0);
+  if (!root.json.is_object()) throwBadInput("{}: expected a JSON object with the key \"model\"", file.string());
   if (root.has("scene")) return loadOriginalScene(root);
 
   // Values given here are kept until the model is loaded: they override those of the model's file.
   std::filesystem::path model, keyFrames;
-  std::optional<double> scale, exposure;
-  std::vector<Camera> cameras;
-  std::optional<std::optional<DirectionalLight>> sun;
-  std::optional<std::vector<SpotLight>> spots;
-  std::optional<std::vector<PointLight>> points;
+  std::optional<double> exposure;
   std::optional<glm::vec3> background;
-  readObject(root,
-             {
-                 {"description", [&](const Value& v) { static_cast<void>(v.text()); }},
-                 {"model", [&](const Value& v) { model = v.path(); }},
-                 {"scale", [&](const Value& v) { scale = v.positiveNumber(); }},
-                 {"camera", [&](const Value& v) { cameras = {readCamera(v)}; }},
-                 {"cameras", [&](const Value& v) { cameras = readCameras(v); }},
-                 {"sun", [&](const Value& v) { sun = v.json.is_null() ? std::nullopt : std::optional(readSun(v)); }},
-                 {"spots", [&](const Value& v) { spots = readLights(v, readSpot); }},
-                 {"points", [&](const Value& v) { points = readLights(v, readPoint); }},
-                 {"background", [&](const Value& v) { background = v.light(); }},
-                 {"exposure", [&](const Value& v) { exposure = v.positiveNumber(); }},
-                 {"keyFrames", [&](const Value& v) { keyFrames = v.path(); }},
-                 {"environment", [](const Value&) {}},  // once it is known where the sun stands
-                 {"media", [](const Value&) {}},  // these three by readSceneMedia, once the model is there
-                 {"materials", [](const Value&) {}},
-                 {"cameraMedium", [](const Value&) {}},
-             });
+  const auto later = [](const Value&) {};
+  readObject(root, {{"description", [&](const Value& v) { static_cast<void>(v.text()); }},
+                    {"model", [&](const Value& v) { model = v.path(); }},
+                    {"scale", [&](const Value& v) { json->millimetresPerUnit = v.positiveNumber(); }},
+                    {"background", [&](const Value& v) { background = v.light(); }},
+                    {"exposure", [&](const Value& v) { exposure = v.positiveNumber(); }},
+                    {"keyFrames", [&](const Value& v) { keyFrames = v.path(); }},
+                    {"camera", later},
+                    {"cameras", later},
+                    {"sun", later},
+                    {"spots", later},
+                    {"points", later},
+                    {"environment", later},
+                    {"media", later},
+                    {"materials", later},
+                    {"cameraMedium", later},
+                    {"objects", later}});
   if (model.empty()) throwBadInput("{}: no key \"model\", the path of the model relative to this file", file.string());
+  const bool hasCameras = root.has("camera") || root.has("cameras");
   if (root.has("camera") && root.has("cameras"))
     throwBadInput("{}: both \"camera\" and \"cameras\", expected one of them", file.string());
   if (lowerExtension(model) == ".json") root.at("model").fail("a model, not another scene JSON");
@@ -266,19 +453,20 @@ Scene loadSceneFile(const std::filesystem::path& file) {
   Scene scene = loadModel(model);
   scene.name = file.stem().string();
   scene.file = file;
-  // Places in the file are as in the model's.
-  for (Camera& camera : cameras) camera.position -= scene.origin;
-  if (scale) scene.metresPerUnit = *scale / 1000.0;
-  if (spots) {
-    scene.spots = *spots;
-    for (SpotLight& light : scene.spots) light.position -= scene.origin;
-  }
-  if (points) {
-    scene.points = *points;
-    for (PointLight& light : scene.points) light.position -= scene.origin;
-  }
-  if (sun || (scene.defaultSun && (spots || points))) {
-    scene.sun = sun ? *sun : std::nullopt;
+  json->materials = scene.materials;
+  json->media = scene.media;
+  if (json->millimetresPerUnit) scene.metresPerUnit = *json->millimetresPerUnit / 1000.0;
+  // Places in the file are as in the model's. What it gives replaces what moves in the model.
+  const auto replace = [&](SceneMotion::Part part) {
+    if (scene.motion) (*scene.motion)[part] = nullptr;
+  };
+  const std::optional<Sun> sun = json->sunAt(0.0);
+  if (root.has("spots")) scene.spots = json->lightsAt("spots", readSpot, scene, 0.0), replace(SceneMotion::Part::spots);
+  if (root.has("points"))
+    scene.points = json->lightsAt("points", readPoint, scene, 0.0), replace(SceneMotion::Part::points);
+  if (root.has("sun") || (scene.defaultSun && (root.has("spots") || root.has("points")))) {
+    scene.sun = sun ? std::optional(sun->light) : std::nullopt;
+    replace(SceneMotion::Part::sun);
     scene.defaultSun = false;
     scene.defaultExposure = false;  // it belongs to the default sun
     scene.exposure = 1.0f;
@@ -288,17 +476,30 @@ Scene loadSceneFile(const std::filesystem::path& file) {
     scene.exposure = static_cast<float>(*exposure);
   }
   if (background) scene.background = *background;
-  readSceneMedia(root, scale, scene);
-  if (!cameras.empty() || !keyFrames.empty()) useChosenView(scene);
-  if (!cameras.empty()) scene.cameras = std::move(cameras);
+  readSceneMedia(root, json->millimetresPerUnit, scene);
+  if (root.has("objects")) {
+    const Value objects = root.at("objects");
+    for (const auto& [mesh, matrix] : readObjects(objects, scene)) {
+      if (!keyTimesIn(objects.json.at(scene.meshes[mesh].name)).empty()) continue;
+      transformMesh(scene, scene.meshes[mesh], matrix);
+      updateBounds(scene, mesh);
+    }
+    scene.bounds = {};
+    for (const Mesh& mesh : scene.meshes) scene.bounds.add(mesh.bounds);
+  }
+  if (hasCameras || !keyFrames.empty()) useChosenView(scene);
+  if (hasCameras) scene.cameras = json->camerasAt(scene, 0.0), replace(SceneMotion::Part::views);
   if (!keyFrames.empty()) {
-    if (!root.has("camera") && !root.has("cameras")) scene.cameras.clear();
+    if (!hasCameras) scene.cameras.clear();
     setKeyFrames(scene, keyFrames);
   }
   if (!root.has("environment")) setDefaultSky(scene);
   else if (const Value environment = root.at("environment"); !environment.json.is_null())
-    scene.environment = readEnvironment(environment, scene.sun);
+    scene.environment = readEnvironment(environment, sun         ? sun
+                                                     : scene.sun ? std::optional(Sun{*scene.sun, 3.0, {}})
+                                                                 : std::nullopt);
   setDefaultExposure(scene, scene.cameras.front());
+  addMotion(json, scene);
   return scene;
 }
 

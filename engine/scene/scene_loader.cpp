@@ -7,6 +7,7 @@
 #include "base/log.hpp"
 #include "scene/json_value.hpp"
 #include "scene/model_import.hpp"
+#include "scene/motion.hpp"
 #include "scene/polygon_mesh.hpp"
 #include "scene/scene_file.hpp"
 
@@ -15,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <tuple>
 
 namespace lucerna {
 
@@ -140,6 +142,52 @@ ModelViews readModel(Scene& scene, std::span<const std::uint8_t> content) {
   return readOther(scene, content);
 }
 
+/// The lights and cameras of an animated file. firstCamera: how many views of our own come before the file's.
+void addMovingViews(Scene& scene, const ModelViews& views, const std::vector<int>& lights,
+                    const std::vector<int>& cameras, std::size_t firstCamera) {
+  using Kind = ModelLight::Kind;
+  SceneMotion& motion = motionOf(scene);
+  for (const auto& [kind, part, name] : {std::tuple(Kind::directional, SceneMotion::Part::sun, "sun"),
+                                         std::tuple(Kind::spot, SceneMotion::Part::spots, "spots"),
+                                         std::tuple(Kind::point, SceneMotion::Part::points, "points")}) {
+    std::vector<std::pair<std::size_t, std::size_t>> moved;  // the scene's number of a light, and its node
+    for (std::size_t i = 0; i < lights.size(); ++i)
+      if (lights[i] >= 0 && views.lights[i].kind == kind && views.moves(views.lights[i].node))
+        moved.emplace_back(static_cast<std::size_t>(lights[i]), views.lights[i].node);
+    if (moved.empty()) continue;
+    motion.names.emplace_back(name);
+    motion[part] = [kind = kind, moved, world = views.worldFromNode](Scene& posed, double seconds) {
+      for (const auto& [light, node] : moved) {
+        const glm::dmat4 m = world(node, seconds);
+        const glm::dvec3 forwards = -glm::dvec3(m[2]);
+        const double length = glm::length(forwards);
+        if (kind == Kind::point) posed.points[light].position = glm::dvec3(m[3]);
+        if (kind == Kind::spot) posed.spots[light].position = glm::dvec3(m[3]);
+        if (!(length > 0.0)) continue;
+        if (kind == Kind::spot) posed.spots[light].direction = forwards / length;
+        if (kind == Kind::directional) posed.sun->direction = forwards / length;
+      }
+    };
+  }
+  std::vector<std::pair<std::size_t, std::size_t>> moved;
+  for (std::size_t i = 0; i < cameras.size(); ++i)
+    if (cameras[i] >= 0 && views.moves(views.cameraNodes[i]))
+      moved.emplace_back(firstCamera + static_cast<std::size_t>(cameras[i]), views.cameraNodes[i]);
+  if (moved.empty()) return;
+  motion.names.emplace_back("cameras");
+  motion[SceneMotion::Part::views] = [moved, world = views.worldFromNode](Scene& posed, double seconds) {
+    for (const auto& [index, node] : moved) {
+      const glm::dmat4 m = world(node, seconds);
+      Camera& camera = posed.cameras[index];
+      const glm::dvec3 forwards = -glm::dvec3(m[2]), right = glm::cross(forwards, glm::dvec3(m[1]));
+      camera.position = glm::dvec3(m[3]);
+      if (!(glm::length(right) > 0.0)) continue;
+      camera.direction = glm::normalize(forwards);
+      camera.up = glm::normalize(glm::cross(right, camera.direction));
+    }
+  };
+}
+
 }  // namespace
 
 Scene loadModel(const fs::path& file) {
@@ -158,10 +206,12 @@ Scene loadModel(const fs::path& file) {
     logWarning("{}: {} triangles with positions that are not finite (up to 3.4e38) ignored", file.string(),
                scene.droppedTriangles);
 
-  appendLights(scene, views.lights);
+  const std::vector<int> lights = appendLights(scene, views.lights);
   setDefaultSun(scene);
-  appendCameras(scene, views.cameras);
+  const std::vector<int> cameras = appendCameras(scene, views.cameras);
+  const std::size_t cameraCount = scene.cameras.size();
   setDefaultView(scene);
+  if (views.moves) addMovingViews(scene, views, lights, cameras, scene.cameras.size() - cameraCount);
   return scene;
 }
 
@@ -207,6 +257,13 @@ Scene loadScene(const fs::path& file) {
     setExposureForLamps(scene);
   }
   warnOfOpacity(scene);
+  finishMotion(scene);
+  return scene;
+}
+
+Scene loadScene(const fs::path& file, double seconds) {
+  Scene scene = loadScene(file);
+  if (seconds != 0.0) poseAt(scene, seconds);
   return scene;
 }
 

@@ -5,6 +5,7 @@
 #include "base/log.hpp"
 #include "scene/scene.hpp"
 #include "support/contains.hpp"
+#include "support/gltf_file.hpp"
 #include "support/temp_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -24,118 +25,14 @@ using test::contains;
 using test::TempFolder;
 using Json = nlohmann::json;
 
-constexpr int kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123, kUnsignedInt = 5125,
-              kFloat = 5126;
+using test::base64;
+using test::bytesOf;
+using test::corners;
+using test::expectCorners;
+using test::Gltf;
 
-template <class T>
-std::string bytesOf(const std::vector<T>& values) {
-  std::string bytes(sizeof(T) * values.size(), '\0');
-  if (!values.empty()) std::memcpy(bytes.data(), values.data(), bytes.size());
-  return bytes;
-}
-
-std::string bytesOf(std::initializer_list<float> values) { return bytesOf(std::vector<float>(values)); }
-
-/// RFC 4648.
-std::string base64(const std::string& bytes) {
-  const char* letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t three = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      three = three << 8 | (i + k < bytes.size() ? static_cast<std::uint8_t>(bytes[i + k]) : 0u);
-    for (std::size_t k = 0; k < 4; ++k) text += i + k > bytes.size() ? '=' : letters[three >> (18 - 6 * k) & 63u];
-  }
-  return text;
-}
-
-/// A file of one mesh of one primitive in one node, to begin with: the triangle (0,0,0) (1,0,0) (0,1,0).
-class Gltf {
- public:
-  Gltf() {
-    root = {{"asset", {{"version", "2.0"}}},
-            {"scene", 0},
-            {"scenes", {{{"nodes", {0}}}}},
-            {"nodes", {{{"mesh", 0}}}},
-            {"meshes", {{{"primitives", {{{"attributes", Json::object()}}}}}}}};
-    attributes()["POSITION"] = floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
-  }
-
-  Json& primitive() { return root["meshes"][0]["primitives"][0]; }
-  Json& attributes() { return primitive()["attributes"]; }
-  Json& node() { return root["nodes"][0]; }
-
-  int view(const std::string& bytes, int stride = 0) {
-    buffer_.append((4 - buffer_.size() % 4) % 4, '\0');
-    Json v = {{"buffer", 0}, {"byteOffset", buffer_.size()}, {"byteLength", bytes.size()}};
-    if (stride > 0) v["byteStride"] = stride;
-    buffer_ += bytes;
-    return add("bufferViews", v);
-  }
-  int accessor(int view, int type, const char* shape, std::size_t count, bool normalized = false) {
-    Json a = {{"bufferView", view}, {"componentType", type}, {"type", shape}, {"count", count}};
-    if (normalized) a["normalized"] = true;
-    return add("accessors", a);
-  }
-  int floats(std::initializer_list<float> values, const char* shape) {
-    const std::size_t width = std::string(shape) == "SCALAR" ? 1 : std::string(shape) == "MAT4" ? 16 : shape[3] - '0';
-    return accessor(view(bytesOf(values)), kFloat, shape, values.size() / width);
-  }
-  int add(const char* array, const Json& member) {
-    root[array].push_back(member);
-    return static_cast<int>(root[array].size()) - 1;
-  }
-
-  /// With its numbers as data in the text.
-  std::string text() const {
-    Json whole = root;
-    if (!whole.contains("buffers"))
-      whole["buffers"] = {
-          {{"byteLength", buffer_.size()}, {"uri", "data:application/octet-stream;base64," + base64(buffer_)}}};
-    return whole.dump();
-  }
-  std::string binary() const {
-    Json whole = root;
-    whole["buffers"] = {{{"byteLength", buffer_.size()}}};
-    std::string json = whole.dump(), data = buffer_;
-    json.append((4 - json.size() % 4) % 4, ' ');
-    data.append((4 - data.size() % 4) % 4, '\0');
-    const auto word = [](std::size_t value) {
-      return bytesOf(std::vector<std::uint32_t>{static_cast<std::uint32_t>(value)});
-    };
-    return "glTF" + word(2) + word(12 + 8 + json.size() + 8 + data.size()) + word(json.size()) + "JSON" + json +
-           word(data.size()) + std::string("BIN\0", 4) + data;
-  }
-  const std::string& numbers() const { return buffer_; }
-  Scene load() const {
-    clearLoggedWarnings();
-    const TempFolder folder;
-    return loadScene(folder.write("a.gltf", text()));
-  }
-  std::string refusal() const {
-    return badInputMessage([&] { load(); });
-  }
-
-  Json root;
-
- private:
-  std::string buffer_;
-};
-
-/// Corners of all triangles in turn.
-std::vector<glm::vec3> corners(const Scene& scene) {
-  std::vector<glm::vec3> result;
-  for (const std::uint32_t i : scene.indices) result.push_back(scene.vertices[i].position);
-  return result;
-}
-
-void expectCorners(const Scene& scene, const std::vector<glm::vec3>& expected, float within = 1e-6f) {
-  const std::vector<glm::vec3> found = corners(scene);
-  ASSERT_EQ(found.size(), expected.size());
-  for (std::size_t i = 0; i < found.size(); ++i)
-    EXPECT_LT(glm::distance(found[i], expected[i]), within)
-        << i << ": " << found[i].x << " " << found[i].y << " " << found[i].z;
-}
+constexpr int kByte = Gltf::kByte, kUnsignedByte = Gltf::kUnsignedByte, kShort = Gltf::kShort,
+              kUnsignedShort = Gltf::kUnsignedShort, kUnsignedInt = Gltf::kUnsignedInt, kFloat = Gltf::kFloat;
 
 const std::vector<glm::vec3> kTriangle = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
 
@@ -667,14 +564,6 @@ TEST(GltfReader, WhatIsBlendedIsSaid) {
   EXPECT_TRUE(contains(loggedWarnings()[0], "'pane': not blended (BLEND) but drawn opaque, whose alpha is 0.3"));
   factor = {1, 1, 1, 0};
   EXPECT_TRUE(contains(gltf.refusal(), "nothing to draw"));  // it covers nothing
-}
-
-TEST(GltfReader, AnimationsAreSaidNotToBePlayed) {
-  Gltf gltf;
-  gltf.root["animations"] = {Json::object()};
-  expectCorners(gltf.load(), kTriangle);
-  ASSERT_EQ(loggedWarnings().size(), 1u);
-  EXPECT_TRUE(contains(loggedWarnings()[0], "animations are not played"));
 }
 
 }  // namespace

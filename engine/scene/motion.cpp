@@ -1,0 +1,173 @@
+#include "scene/motion.hpp"
+
+#include "base/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace lucerna {
+
+namespace {
+
+bool isSame(const DirectionalLight& a, const DirectionalLight& b) {
+  return a.direction == b.direction && a.irradiance == b.irradiance && a.angularDiameter == b.angularDiameter;
+}
+bool isSame(const SpotLight& a, const SpotLight& b) {
+  return a.position == b.position && a.direction == b.direction && a.intensity == b.intensity &&
+         a.innerAngle == b.innerAngle && a.outerAngle == b.outerAngle && a.radius == b.radius;
+}
+bool isSame(const PointLight& a, const PointLight& b) {
+  return a.position == b.position && a.intensity == b.intensity && a.radius == b.radius;
+}
+bool isSame(const Material& a, const Material& b) {
+  return a.bsdf == b.bsdf && a.roughness == b.roughness && a.ior == b.ior && a.interior == b.interior &&
+         a.diffuse == b.diffuse && a.specular == b.specular && a.emission == b.emission &&
+         a.emissionScale == b.emissionScale;
+}
+bool isSame(const Medium& a, const Medium& b) {
+  return a.scattering == b.scattering && a.absorption == b.absorption && a.anisotropy == b.anisotropy &&
+         a.emission == b.emission && a.phase == b.phase;  // grids do not move
+}
+bool isSame(const Environment& a, const Environment& b) {
+  return a.radiance == b.radiance && a.rotation == b.rotation && a.picture.has_value() == b.picture.has_value() &&
+         (!a.picture || a.picture->pixels == b.picture->pixels);
+}
+template <class T>
+bool isSame(const std::vector<T>& a, const std::vector<T>& b) {
+  return std::ranges::equal(a, b, [](const T& x, const T& y) { return isSame(x, y); });
+}
+template <class T>
+bool isSame(const std::optional<T>& a, const std::optional<T>& b) {
+  return a.has_value() == b.has_value() && (!a || isSame(*a, *b));
+}
+
+bool isFiniteVertex(const Vertex& v) {
+  return std::isfinite(v.position.x) && std::isfinite(v.position.y) && std::isfinite(v.position.z);
+}
+
+/// Poses meshes and returns those whose vertices are others than before.
+std::vector<std::size_t> poseMeshes(Scene& scene, double seconds) {
+  const SceneMotion& motion = *scene.motion;
+  std::vector<std::vector<Vertex>> before;
+  for (const std::size_t index : motion.meshes) {
+    const Mesh& mesh = scene.meshes[index];
+    std::copy_n(motion.restIndices.begin() + mesh.firstIndex, mesh.indexCount, scene.indices.begin() + mesh.firstIndex);
+    const VertexRange range = vertexRange(scene, mesh);
+    const auto from = scene.vertices.begin() + range.first;
+    before.emplace_back(from, from + range.count);
+    std::copy_n(motion.restVertices.begin() + range.first, range.count, from);
+  }
+  for (const SceneMotion::Part part : {SceneMotion::Part::meshes, SceneMotion::Part::objects})
+    if (motion[part]) motion[part](scene, seconds);
+  std::vector<std::size_t> changed;
+  for (std::size_t k = 0; k < motion.meshes.size(); ++k) {
+    const Mesh& mesh = scene.meshes[motion.meshes[k]];
+    const VertexRange range = vertexRange(scene, mesh);
+    if (std::memcmp(before[k].data(), &scene.vertices[range.first], range.count * sizeof(Vertex)) == 0) continue;
+    changed.push_back(motion.meshes[k]);
+    updateBounds(scene, motion.meshes[k]);
+  }
+  if (motion.meshes.empty()) return changed;
+  scene.bounds = motion.bounds;
+  for (const Mesh& mesh : scene.meshes) scene.bounds.add(mesh.bounds);
+  return changed;
+}
+
+}  // namespace
+
+VertexRange vertexRange(const Scene& scene, const Mesh& mesh) {
+  std::uint32_t low = ~0u, high = 0;
+  for (std::uint32_t i = mesh.firstIndex; i < mesh.firstIndex + mesh.indexCount; ++i) {
+    low = std::min(low, scene.indices[i]);
+    high = std::max(high, scene.indices[i] + 1);
+  }
+  return low < high ? VertexRange{low, high - low} : VertexRange{};
+}
+
+void turnFaces(Scene& scene, const Mesh& mesh) {
+  for (std::uint32_t i = mesh.firstIndex; i < mesh.firstIndex + mesh.indexCount; i += 3)
+    std::swap(scene.indices[i + 1], scene.indices[i + 2]);
+}
+
+void transformMesh(Scene& scene, const Mesh& mesh, const glm::dmat4& matrix) {
+  const glm::dmat3 linear(matrix);
+  // As in model_mesh.cpp: the inverse transpose times the determinant.
+  const bool mirrored = glm::determinant(linear) < 0.0;
+  const glm::dmat3 cofactor =
+      glm::dmat3(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]), glm::cross(linear[0], linear[1])) *
+      (mirrored ? -1.0 : 1.0);
+  const VertexRange range = vertexRange(scene, mesh);
+  for (std::uint32_t i = range.first; i < range.first + range.count; ++i) {
+    Vertex& vertex = scene.vertices[i];
+    vertex.position = glm::vec3(matrix * glm::dvec4(vertex.position, 1.0));
+    const glm::dvec3 normal = cofactor * glm::dvec3(vertex.normal);
+    if (const double length = glm::length(normal); std::isfinite(length) && length > 0.0)
+      vertex.normal = glm::vec3(normal / length);
+  }
+  if (mirrored) turnFaces(scene, mesh);
+}
+
+SceneMotion& motionOf(Scene& scene) {
+  if (!scene.motion) scene.motion = std::make_shared<SceneMotion>();
+  return *scene.motion;
+}
+
+void finishMotion(Scene& scene) {
+  if (!scene.motion) return;
+  SceneMotion& motion = *scene.motion;
+  std::ranges::sort(motion.meshes);
+  motion.meshes.erase(std::ranges::unique(motion.meshes).begin(), motion.meshes.end());
+  motion.restVertices = scene.vertices;
+  motion.restIndices = scene.indices;
+  motion.bounds = scene.bounds;
+  constexpr int kTimes = 64;
+  if (!motion.meshes.empty())
+    for (int k = 0; k <= kTimes; ++k) {
+      poseMeshes(scene, motion.end * k / kTimes);
+      motion.bounds.add(scene.bounds);
+    }
+  poseAt(scene, 0.0);
+}
+
+void updateBounds(Scene& scene, std::size_t index) {
+  Mesh& mesh = scene.meshes[index];
+  mesh.bounds = {};
+  const VertexRange range = vertexRange(scene, mesh);
+  for (std::uint32_t i = range.first; i < range.first + range.count; ++i) {
+    if (!isFiniteVertex(scene.vertices[i]))
+      throwBadInput("{}: mesh '{}' at {:g} s: a position is not finite (up to 3.4e38)", scene.file.string(), mesh.name,
+                    scene.time);
+    mesh.bounds.add(glm::dvec3(scene.vertices[i].position));
+  }
+}
+
+SceneChange poseAt(Scene& scene, double seconds) {
+  SceneChange change;
+  scene.time = seconds;
+  if (!scene.motion) return change;
+  const SceneMotion& motion = *scene.motion;
+  change.meshes = poseMeshes(scene, seconds);
+  /// Poses a part and tells whether that changed what it moves.
+  const auto pose = [&](SceneMotion::Part part, const auto& moved) {
+    if (!motion[part]) return false;
+    const auto before = moved;
+    motion[part](scene, seconds);
+    return !isSame(before, moved);
+  };
+  using Part = SceneMotion::Part;
+  change.sun = pose(Part::sun, scene.sun);
+  change.lamps = pose(Part::spots, scene.spots);
+  change.lamps = pose(Part::points, scene.points) || change.lamps;
+  const std::vector<Material> materials = motion[Part::media] ? scene.materials : std::vector<Material>{};
+  change.media = pose(Part::media, scene.media);
+  change.materials = motion[Part::media] && !isSame(materials, scene.materials);
+  change.environment = pose(Part::environment, scene.environment);
+  if (motion[Part::views]) {
+    motion[Part::views](scene, seconds);
+    change.views = true;
+  }
+  return change;
+}
+
+}  // namespace lucerna

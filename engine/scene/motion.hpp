@@ -1,0 +1,76 @@
+// What of a scene changes over time, and the scene at a time (no GL).
+//
+// Time is in seconds; files are loaded as they are at time 0. What moves is given by curves in the scene's JSON
+// (scene_file.cpp) and by animations of glTF files (gltf_motion.cpp). The pose at a time depends on that time alone,
+// not on the poses before.
+#pragma once
+
+#include "scene/scene.hpp"
+
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace lucerna {
+
+/// What differs between two times.
+struct SceneChange {
+  std::vector<std::size_t> meshes;  ///< whose vertices are others, rising
+  bool sun = false, lamps = false, materials = false, media = false, environment = false;
+  bool views = false;  ///< cameras, exposure, background
+
+  bool anyLight() const { return sun || lamps || environment; }
+  bool any() const { return !meshes.empty() || anyLight() || materials || media || views; }
+};
+
+struct SceneMotion {
+  /// Parts of a scene, in the order in which they are posed.
+  enum class Part { meshes, objects, sun, spots, points, media, environment, views, count };
+  /// Sets its part of the scene as it is at a time; a part that nothing moves has none. Meshes are as loaded before.
+  using Pose = std::function<void(Scene& scene, double seconds)>;
+
+  std::array<Pose, static_cast<std::size_t>(Part::count)> parts;
+  double end = 0.0;  ///< of the last key, seconds
+  std::vector<std::string> names;  ///< of what moves, for people
+  Bounds bounds;  ///< of the scene at 64 times from 0 to `end`
+  std::vector<Vertex> restVertices;  ///< the scene's as loaded
+  std::vector<std::uint32_t> restIndices;
+  std::vector<std::size_t> meshes;  ///< that move, rising
+
+  Pose& operator[](Part part) { return parts[static_cast<std::size_t>(part)]; }
+  const Pose& operator[](Part part) const { return parts[static_cast<std::size_t>(part)]; }
+};
+
+/// A mesh's vertices. Readers give each mesh vertices of its own, one after another.
+struct VertexRange {
+  std::uint32_t first = 0, count = 0;
+};
+VertexRange vertexRange(const Scene& scene, const Mesh& mesh);
+
+/// Moves a mesh's vertices and turns its normals; a mirrored one keeps the sides of its faces. A matrix that flattens
+/// keeps the normals that it cannot turn.
+void transformMesh(Scene& scene, const Mesh& mesh, const glm::dmat4& matrix);
+
+/// Turns a mesh's faces over.
+void turnFaces(Scene& scene, const Mesh& mesh);
+
+/// What the bounds of a mesh are now. Throws Error(badInput) naming file, mesh and the scene's time if a position is
+/// not finite.
+void updateBounds(Scene& scene, std::size_t mesh);
+
+/// The motion of a scene that is being loaded, made if there is none yet.
+SceneMotion& motionOf(Scene& scene);
+
+/// Ends loading: what the bounds of the motion are.
+void finishMotion(Scene& scene);
+
+/// Poses a scene as it is at a time. Bounds hold the scene at that time and those of the motion, so that they do not
+/// change from frame to frame. Throws Error(badInput) naming file, mesh and time if a position is not finite.
+SceneChange poseAt(Scene& scene, double seconds);
+
+/// A scene as it is at a time.
+Scene loadScene(const std::filesystem::path& file, double seconds);
+
+}  // namespace lucerna

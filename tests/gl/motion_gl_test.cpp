@@ -1,0 +1,104 @@
+// Scenes that move, in every technique: a renderer that follows the scene draws what a new one would, whatever it has
+// drawn before; lights and surfaces are where the time says.
+#include "base/data.hpp"
+#include "render/renderer.hpp"
+#include "render/techniques.hpp"
+#include "scene/motion.hpp"
+#include "support/gl_fixture.hpp"
+#include "support/temp_folder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string_view>
+
+namespace lucerna {
+namespace {
+
+constexpr int kPixels = 24;
+
+class MotionGl : public test::GlTest {
+ protected:
+  static RenderSettings settingsOf(std::string_view technique, ShadowTransport shadows = ShadowTransport::map) {
+    RenderSettings settings;
+    settings.technique = technique;
+    settings.size = {kPixels, kPixels};
+    settings.fullFloatTarget = true;
+    settings.shadows = shadows;
+    return settings;
+  }
+  Image anew(const Scene& scene, const RenderSettings& settings) {
+    Renderer renderer(context(), programs(), scene, settings);
+    renderer.renderToTheEnd(scene.cameras.front());
+    return renderer.readRadiance();
+  }
+  /// Draws at other times first.
+  Image followed(Scene& scene, const RenderSettings& settings, double seconds) {
+    auto renderer = std::make_unique<Renderer>(context(), programs(), scene, settings);
+    for (const double t : {0.0, seconds + 3.0, seconds}) {
+      if (!renderer->follow(context(), programs(), scene, poseAt(scene, t)))
+        renderer = std::make_unique<Renderer>(context(), programs(), scene, settings);
+      renderer->renderToTheEnd(scene.cameras.front());
+    }
+    return renderer->readRadiance();
+  }
+  static double largestDifference(const Image& a, const Image& b) {
+    double worst = 0.0;
+    for (std::size_t i = 0; i < a.pixels.size(); ++i)
+      for (int c = 0; c < 3; ++c)
+        worst =
+            std::max(worst, static_cast<double>(std::abs(a.pixels[i][c] - b.pixels[i][c])) / (1.0 + b.pixels[i][c]));
+    return worst;
+  }
+};
+
+TEST_F(MotionGl, FollowingDrawsWhatANewRendererDraws) {
+  const auto file = *findDataFolder() / "assets/cornell/moving.json";
+  for (const TechniqueEntry& technique : allTechniques())
+    for (const ShadowTransport shadows : {ShadowTransport::map, ShadowTransport::rays}) {
+      if (shadows == ShadowTransport::rays && technique.name != "direct") continue;
+      const RenderSettings settings = settingsOf(technique.name, shadows);
+      Scene scene = loadScene(file), still = loadScene(file, 2.5);
+      const Image right = anew(still, settings), found = followed(scene, settings, 2.5);
+      EXPECT_LT(largestDifference(found, right), 2e-4) << technique.name;
+      EXPECT_GT(largestDifference(found, anew(loadScene(file), settings)), 0.1) << technique.name;
+    }
+}
+
+TEST_F(MotionGl, SceneFarFromTheOriginFollowsToo) {
+  const test::TempFolder folder;
+  folder.write("m.obj",
+               "o floor\nv 4096 0 0\nv 4098 0 0\nv 4098 0 2\nv 4096 0 2\nvn 0 1 0\nf 4//1 3//1 2//1 1//1\n"
+               "o card\nv 4096.5 1 0.5\nv 4097.5 1 0.5\nv 4097.5 1 1.5\nv 4096.5 1 1.5\nf 8//1 7//1 6//1 5//1\n");
+  const auto file = folder.write("s.json", R"({"model": "m.obj", "environment": null,
+      "camera": {"position": [4097, 3, 1], "direction": [0, -1, 0], "up": [0, 0, -1], "fov": 40},
+      "sun": {"direction": {"times": [0, 1], "values": [[0, -1, 0], [0.5, -1, 0]]}, "irradiance": [3, 3, 3]},
+      "objects": {"card": {"translation": {"times": [0, 1], "values": [[0, 0, 0], [-0.9, -0.4, 0.3]]}}}})");
+  Scene scene = loadScene(file), still = loadScene(file, 0.75);
+  EXPECT_LT(largestDifference(followed(scene, settingsOf("direct"), 0.75), anew(still, settingsOf("direct"))), 1e-5);
+}
+
+// A lamp above a white floor: radiance albedo / pi * I h / d^3 beneath it, moved and dimmed by curves.
+TEST_F(MotionGl, ALampLightsFromWhereItIsThen) {
+  const test::TempFolder folder;
+  folder.write("m.obj",
+               "mtllib m.mtl\nusemtl white\nv -9 0 -9\nv 9 0 -9\nv 9 0 9\nv -9 0 9\nvn 0 1 0\nf 4//1 3//1 2//1 1//1\n");
+  folder.write("m.mtl", "newmtl white\nKd 1 1 1\n");
+  const auto file = folder.write("s.json", R"({"model": "m.obj", "environment": null, "sun": null,
+      "camera": {"position": [0, 5, 0], "direction": [0, -1, 0], "up": [0, 0, -1], "fov": 0.1},
+      "points": [{"position": {"times": [0, 4], "values": [[0, 1, 0], [4, 1, 0]]},
+                  "intensity": {"times": [0, 4], "values": [[1, 1, 1], [5, 5, 5]]}}]})");
+  for (const char* technique : {"direct", "irradiance-cache", "path"}) {
+    Scene scene = loadScene(file);
+    for (const double t : {1.0, 3.0}) {
+      const double right = (1.0 + t) / (std::pow(1.0 + t * t, 1.5) * 3.14159265358979);
+      EXPECT_NEAR(followed(scene, settingsOf(technique), t).at(kPixels / 2, kPixels / 2).x, right, 1e-3 * right)
+          << technique << t;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace lucerna
