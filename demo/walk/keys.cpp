@@ -16,6 +16,7 @@ constexpr KeyBinding kKeys[] = {
     {'V', false, Action::video, "record a video, end it (ffmpeg)"},
     {key::kF11, true, Action::capture, "capture a frame for RenderDoc (requires walk --capture N)"},
     {' ', false, Action::pause, "pause and resume along the path"},
+    {'P', false, Action::hold, "hold a scene that moves, and let it go on"},
     {'R', false, Action::follow, "leave the path, return to it"},
     {'[', false, Action::slower, "half the speed along the path"},
     {']', false, Action::faster, "twice the speed along the path"},

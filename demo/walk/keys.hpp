@@ -19,6 +19,7 @@ enum class Action {
   video,
   end,
   pause,
+  hold,
   follow,
   slower,
   faster,

@@ -17,6 +17,7 @@ struct WalkOptions {
   /// Whether to render off-screen into files instead of a window.
   bool records() const { return !record.empty() || part.isPart() || !part.checkpoint.empty(); }
   int capture = -1;  ///< the frame that RenderDoc captures; negative: none
+  double fps = 25.0, time = 0.0;  ///< of a scene that moves: frames a second of --record, and the first frame's time
   int frames = 0;  ///< 0: 12 when recording, the whole path in a window
 };
 

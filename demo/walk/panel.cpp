@@ -1,5 +1,7 @@
 #include "walk/panel.hpp"
 
+#include "scene/motion.hpp"
+
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "base/statistics.hpp"
@@ -66,6 +68,20 @@ void frameScene(WalkState& s) {
   s.path.follows = false;
 }
 
+/// The time of a scene that moves.
+void showTime(Ui& ui, WalkState& s) {
+  TimeState& time = s.time;
+  if (button(ui, time.held ? "let go on" : "hold")) time.held = !time.held;
+  ImGui::SameLine();
+  checkbox(ui, "loop time", time.loops);
+  float seconds = static_cast<float>(time.seconds), speed = static_cast<float>(time.speed);
+  if (slider(ui, "scene time", seconds, 0.0f, static_cast<float>(s.scene->motion->end), "%.2f s")) {
+    time.seconds = static_cast<double>(seconds);
+    time.held = true;
+  }
+  if (slider(ui, "time speed", speed, 0.0625f, 16.0f, "%.3g x", true)) time.speed = static_cast<double>(speed);
+}
+
 void showCamera(Ui& ui, WalkState& s, Host& host) {
   const Camera& c = s.camera->camera();
   line(fmt::format("at {:.4g}, {:.4g}, {:.4g}", c.position.x, c.position.y, c.position.z));
@@ -105,6 +121,7 @@ void showCamera(Ui& ui, WalkState& s, Host& host) {
     s.path.follows = true;
   }
   if (slider(ui, "play speed", playSpeed, 0.0625f, 16.0f, "%.3g x", true)) s.path.speed = playSpeed;
+  if (s.scene->motion) showTime(ui, s);
   (void)host;
 }
 

@@ -52,6 +52,12 @@ struct PathState {
   double duration() const { return SplinePlayback(last - first + 1).duration(); }
 };
 
+/// The time of a scene that moves.
+struct TimeState {
+  bool held = false, loops = true;
+  double seconds = 0.0, speed = 1.0;
+};
+
 struct WalkState {
   // Scene
   std::unique_ptr<Scene> scene;
@@ -62,6 +68,8 @@ struct WalkState {
   float emissionFactor = 1.0f;
   bool movesLamps = false;  ///< by axes drawn in the picture
   std::vector<Material> materialsAsLoaded;
+
+  TimeState time;
 
   // Camera
   PathState path;

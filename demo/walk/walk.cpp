@@ -21,6 +21,7 @@
 #include "walk/keys.hpp"
 #include "walk/options.hpp"
 #include "shared/paths.hpp"
+#include "scene/motion.hpp"
 #include "walk/window.hpp"
 
 #include <fmt/core.h>
@@ -68,6 +69,11 @@ nlohmann::ordered_json resultJson(const WalkOptions& options, const Host& host, 
   return json;
 }
 
+/// Whether a scene that moves is seen from its first camera, as no path is named.
+bool standsStill(const WalkOptions& options, const Scene& scene) {
+  return scene.motion && scene.keyFrames.empty() && options.keys.empty() && options.views.empty();
+}
+
 /// The frames of a walk as units of work. Scene, settings and cameras determine a frame, so they identify the folder.
 PartFolder framesOf(const WalkOptions& options, const Scene& scene, const Renderer& renderer,
                     const std::vector<Camera>& cameras) {
@@ -85,14 +91,15 @@ PartFolder framesOf(const WalkOptions& options, const Scene& scene, const Render
   const std::string settings = options.picture.toJson().dump();
   return PartFolder(
       options.part, "walk",
-      fmt::format("{}, scene {}, views {:016x}, {}", scene.name,
+      fmt::format("{}{}, scene {}, views {:016x}, {}", scene.name,
+                  scene.motion ? fmt::format(", {} s, {} a second", options.time, options.fps) : "",
                   measure::keyOf(scene, cameras.front(), renderer.size(), Transport::all, settings).name(),
                   views.value(), settings),
       cameras.size());
 }
 
-int record(const WalkOptions& options, const Host& host, const gl::Context& context, const Scene& scene,
-           Renderer& renderer, const Spline& path) {
+int record(const WalkOptions& options, const Host& host, const gl::Context& context, gl::ProgramLibrary& programs,
+           Scene& scene, std::unique_ptr<Renderer> renderer, const Spline& path) {
   const fs::path folder = options.record.empty() ? fs::path("walk") : fs::path(options.record);
   std::error_code error;
   if (!options.part.isPart()) fs::create_directories(folder, error);
@@ -100,6 +107,7 @@ int record(const WalkOptions& options, const Host& host, const gl::Context& cont
     throwBadInput("--record {}: cannot create folder ({})", folder.string(), error.message());
   const auto [first, last] = parseViews(options.views, path.viewCount());
   const int frames = options.frames > 0 ? options.frames : 12;
+  const bool stands = standsStill(options, scene);
   std::vector<int> views;
   std::vector<Camera> cameras;
   for (int i = 0; i < frames; ++i) {
@@ -108,13 +116,15 @@ int record(const WalkOptions& options, const Host& host, const gl::Context& cont
                         : first);
     cameras.push_back(path.view(views.back()));
   }
-  const PartFolder part = framesOf(options, scene, renderer, cameras);
+  const RenderSettings settings = renderer->settings();
+  const PartFolder part = framesOf(options, scene, *renderer, cameras);
 
   watchForInterrupt();
-  renderer.renderSamples(path.view(first),
-                         path.view(first));  // warm-up: drivers finish shaders on first use; its times are dropped
+  renderer->renderSamples(path.view(first),
+                          path.view(first));  // warm-up: drivers finish shaders on first use; its times are dropped
   constexpr int kFramesAtRest = 64;  // flicker of a walk from where one has stood, not of a cut's first frames
-  for (int i = 0; options.flicker && i < kFramesAtRest; ++i) renderer.renderSamples(path.view(first), path.view(first));
+  for (int i = 0; options.flicker && i < kFramesAtRest; ++i)
+    renderer->renderSamples(path.view(first), path.view(first));
   Progress progress("walk", static_cast<int>(part.last() - part.first()), options.common.quiet);
   std::vector<double> frameSeconds;
   std::optional<int> before;
@@ -127,19 +137,26 @@ int record(const WalkOptions& options, const Host& host, const gl::Context& cont
       frameSeconds.push_back(kept->at("seconds").get<double>());
     } else {
       const auto start = Clock::now();
-      if (pathOf(renderer.technique())) renderer.renderToTheEnd(cameras[i]);  // all samples: one alone is mere noise
-      else renderer.renderSamples(cameras[i], cameras[i]);
+      if (scene.motion) {
+        const SceneChange change = poseAt(scene, options.time + static_cast<double>(i) / options.fps);
+        if (!renderer->follow(context, programs, scene, change))
+          renderer = std::make_unique<Renderer>(context, programs, scene, settings);
+      }
+      if (stands) cameras[i] = scene.cameras.front();
+      // All samples of paths, of which one alone is mere noise; all light, where each frame starts anew.
+      if (pathOf(renderer->technique()) || scene.motion) renderer->renderToTheEnd(cameras[i]);
+      else renderer->renderSamples(cameras[i], cameras[i]);
       gl::finish();
       frameSeconds.push_back(secondsSince(start));
-      writePng(part.folder() ? part.file(i, ".png") : file, renderer.readDisplay());
+      writePng(part.folder() ? part.file(i, ".png") : file, renderer->readDisplay());
       part.store(i, {{"seconds", frameSeconds.back()}});  // stored last: it says that the picture is complete
     }
     if (part.folder() && !part.isPart()) writeFileAtomically(file, readFileBytes(part.file(i, ".png")));
     if (options.flicker && before) {
       // The same view, once with its own volume and once with the previous view's: motion cancels, flicker remains.
-      const Image now = renderer.readRadiance();
-      renderer.renderSamples(cameras[i], path.view(*before));
-      const measure::Change change = measure::changeBetween(renderer.readRadiance(), now);
+      const Image now = renderer->readRadiance();
+      renderer->renderSamples(cameras[i], path.view(*before));
+      const measure::Change change = measure::changeBetween(renderer->readRadiance(), now);
       largest = {std::max(largest.mean, change.mean), std::max(largest.block, change.block)};
       changes.push_back({{"view", views[i]}, {"mean", change.mean}, {"block", change.block}});
     }
@@ -147,21 +164,21 @@ int record(const WalkOptions& options, const Host& host, const gl::Context& cont
     progress.update(done + 1);
   }
   if (!interrupted()) part.finish();
-  renderer.drain();
+  renderer->drain();
   double seconds = 0.0;
   for (double s : frameSeconds) seconds += s;
   if (!options.common.quiet) {
-    fmt::print("{} pictures {}x{} in {}, {:.2f} frames per second\n", done, renderer.size().x, renderer.size().y,
+    fmt::print("{} pictures {}x{} in {}, {:.2f} frames per second\n", done, renderer->size().x, renderer->size().y,
                part.isPart() ? part.folder()->string() : folder.string(), done / seconds);
-    fmt::print("{}", stagesTable(renderer.timer().statistics(), context.capabilities().renderer));
-    if (gatherOf(renderer.technique())) fmt::print("{}", gatherLine(*gatherOf(renderer.technique())));
+    fmt::print("{}", stagesTable(renderer->timer().statistics(), context.capabilities().renderer));
+    if (gatherOf(renderer->technique())) fmt::print("{}", gatherLine(*gatherOf(renderer->technique())));
     if (options.flicker)
       fmt::print(
           "flicker, largest change of a view when its volume is that of the view before: {:.3f} % of the mean, {:.2f} "
           "% in any 16x16 block\n",
           100.0 * largest.mean, 100.0 * largest.block);
   }
-  nlohmann::ordered_json json = resultJson(options, host, context, renderer, done, seconds);
+  nlohmann::ordered_json json = resultJson(options, host, context, *renderer, done, seconds);
   json["frames_per_second"] = done / seconds;
   if (options.flicker) json["flicker"] = {{"mean", largest.mean}, {"block", largest.block}, {"views", changes}};
   options.common.writeJson(json);
@@ -183,6 +200,10 @@ int play(const WalkOptions& options, Host& host, const gl::Context& context, gl:
   state.path.last = last;
   state.camera.emplace(path.view(first), 0.08 * glm::length(state.scene->bounds.extent()));
   state.path.spline = std::move(path);
+  if (standsStill(options, *state.scene)) {
+    state.path.follows = false;
+    state.camera->place(state.scene->cameras.front());
+  }
   state.sides[0].options = state.sides[1].options = options.picture;
   state.sides[1].options.technique = options.picture.technique == "direct" ? "irradiance-cache" : "direct";
   state.sides[1].options.settings.clear();
@@ -234,8 +255,9 @@ int runWalk(WalkOptions options) {
   gl::ProgramLibrary programs;
   if ((host->kind() == HostKind::window || !options.playInput.empty()) && !options.records())
     return play(options, *host, context, programs, std::move(scene), std::move(path));
-  Renderer renderer(context, programs, scene, settings);
-  return record(options, *host, context, scene, renderer, path);
+  poseAt(scene, options.time);
+  return record(options, *host, context, programs, scene,
+                std::make_unique<Renderer>(context, programs, scene, settings), path);
 }
 
 }  // namespace
@@ -250,6 +272,12 @@ Work addWalk(Command app) {
   options->part.declare(app, "frames of --record");
   app.addOption("--frames", options->frames, "number of pictures (12), or frames in a window (the whole path)")
       .range(1, 1000000);
+  app.addOption("--fps", options->fps, "with --record, of scenes that move: pictures a second of the scene's time")
+      .range(1e-6, 1e6)
+      .showDefault();
+  app.addOption("--time", options->time, "with --record, of scenes that move: seconds at the first picture")
+      .range(-1e12, 1e12)
+      .showDefault();
   app.addOption("--views", options->views, "FIRST:LAST: only these views of the path; 200 between two key frames");
   app.addFlag("--flicker", options->flicker,
               "measure how much the light itself changes between pictures, without the camera's motion");

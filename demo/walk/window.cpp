@@ -10,6 +10,7 @@
 #include "gl/draw.hpp"
 #include "gl/pass.hpp"
 #include "gl/read_pictures.hpp"
+#include "scene/motion.hpp"
 #include "walk/ground.hpp"
 #include "walk/panel.hpp"
 #include "shared/paths.hpp"
@@ -142,6 +143,11 @@ void WalkWindow::act(Action action) {
     case Action::capture: s.captureWanted = true; break;
     case Action::end: s.endWanted = true; break;
     case Action::pause: s.path.paused = !s.path.paused; break;
+    case Action::hold:
+      s.time.held = !s.time.held;
+      if (s.scene->motion) s.say(fmt::format("{} at {:.2f} s", s.time.held ? "held" : "goes on", s.time.seconds));
+      else s.say("nothing moves in this scene");
+      break;
     case Action::follow: s.path.follows = !s.path.follows; break;
     case Action::slower: s.path.speed = std::max(s.path.speed / 2.0, 1.0 / 64.0); break;
     case Action::faster: s.path.speed = std::min(s.path.speed * 2.0, 64.0); break;
@@ -192,6 +198,29 @@ void WalkWindow::act(Action action) {
 }
 
 // ---------------------------------------------------------------------------------------------------- frame steps
+
+// A scene that moves: renderers follow it, or are made anew where they cannot.
+void WalkWindow::moveScene(double seconds) {
+  if (!state_.scene->motion) return;
+  TimeState& time = state_.time;
+  const double end = state_.scene->motion->end;
+  if (!time.held && frames_ > 0) time.seconds += std::min(seconds, kLongestStep) * time.speed;
+  if (time.seconds > end) time.seconds = time.loops && end > 0.0 ? std::fmod(time.seconds, end) : end;
+  if (time.seconds == state_.scene->time) return;
+  const float exposure = state_.scene->exposure;
+  const SceneChange change = poseAt(*state_.scene, time.seconds);
+  if (!change.any()) return;
+  if (state_.scene->exposure != exposure) state_.exposure = state_.scene->exposure;
+  const std::string before = fmt::format(" {}", state_.sceneVersion), now = fmt::format(" {}", ++state_.sceneVersion);
+  for (SideState& side : state_.sides) {
+    side.judgement.clear();
+    const bool isUpToDate = side.builtAs == textOf(side.options) + before;
+    if (side.renderer && isUpToDate && side.renderer->follow(context_, programs_, *state_.scene, change))
+      side.builtAs = textOf(side.options) + now;
+    side.settled = false;
+  }
+  changed();
+}
 
 void WalkWindow::moveCamera(double seconds) {
   PathState& path = state_.path;
@@ -256,6 +285,7 @@ void WalkWindow::loadWantedScene() {
     state_.path.first = 0;
     state_.path.last = state_.path.spline->viewCount() - 1;
     state_.path.seconds = 0.0;
+    state_.time = {};
     state_.path.follows = false;
     state_.camera.emplace(state_.scene->cameras.front(), 0.08 * glm::length(state_.scene->bounds.extent()));
     state_.exposure = state_.scene->exposure;
@@ -590,6 +620,7 @@ void WalkWindow::run() {
     }
     resizeTo(window);
     loadWantedScene();
+    moveScene(dt);
     makeReady();
     if (stop_) break;
     moveCamera(dt);

@@ -37,6 +37,7 @@ class WalkWindow {
   // The steps of a frame, in this order.
   bool takeInput();  ///< false: the walk ends
   void act(Action action);
+  void moveScene(double seconds);
   void moveCamera(double seconds);
   void loadWantedScene();
   void makeReady();
