@@ -10,6 +10,7 @@ Work addBenchError(Command app);
 Work addBenchReferences(Command app);
 Work addBenchFrame(Command app);
 Work addBenchStability(Command app);
+Work addBenchDynamic(Command app);
 Work addBenchFeatures(Command app);
 Work addBenchAll(Command app);
 Work addCheck(Command app);

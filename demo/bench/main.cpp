@@ -19,6 +19,8 @@ lucerna::demo::Work addBench(lucerna::demo::Command app) {
                "Two reports of bench error row by row: better, worse or undecided, by a test that uses both spreads",
                addBenchDiff);
   commands.add("stability", "Stiff and extreme cases: expected, measured, verdict", addBenchStability);
+  commands.add("dynamic", "A sequence of moments, each against its own reference: error, lag, ghosts, flicker, time",
+               addBenchDynamic);
   commands.add("features", "The features that a scene does not need, and what leaving them out saves",
                addBenchFeatures);
   commands.add("all", "The whole report on one page: tables, error, stability, features, rays", addBenchAll);

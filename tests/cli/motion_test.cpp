@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <filesystem>
 #include <fstream>
 #include <string>
 
@@ -61,6 +62,37 @@ TEST_F(Motion, TheWindowPlaysAndHolds) {
     const nlohmann::json json = nlohmann::json::parse(std::ifstream(path("walk.json")));
     EXPECT_NE(json.dump().find("held at 0."), std::string::npos) << json.at("window").dump();
   }
+}
+
+// A lone floor shows direct light alone, so that the rasteriser is right in every moment of a lamp that switches
+// (bright at 1 s and 2 s, dim in between) and of one that passes by. A picture that is held is late by what has gone
+// by.
+TEST_F(Motion, BenchDynamicKnowsAFloorUnderALampThatSwitches) {
+  folder_.write("floor.obj", "v -2 0 -2\nv 2 0 -2\nv 2 0 2\nv -2 0 2\nvn 0 1 0\nf 4//1 3//1 2//1 1//1\n");
+  folder_.write("lamp.json", R"({"model": "floor.obj", "environment": null, "sun": null,
+      "camera": {"position": [0, 3, 3], "target": [0, 0, 0], "fov": 50},
+      "points": [{"position": [0, 1, 0], "intensity": {"times": [0, 1, 1.5, 2], "interpolation": "step",
+                  "values": [[1, 1, 1], [4, 4, 4], [1, 1, 1], [4, 4, 4]]}},
+                 {"position": {"times": [0, 2], "values": [[-1, 0.7, 0], [1, 0.7, 0]]}, "intensity": [1, 1, 1]}]})");
+  const RunResult result = lucerna(
+      "bench dynamic lamp.json --techniques direct irradiance-cache --frames 10 --fps 5 --size 32x24 "
+      "--reference-samples 64 --references references --out page");
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  const nlohmann::json json = nlohmann::json::parse(std::ifstream(path("page/dynamic.json")));
+  for (const nlohmann::json& row : json.at("techniques")) {
+    EXPECT_EQ(row.at("l2").size(), 10u);
+    EXPECT_LT(row.at("worst").get<double>(), 0.03) << row.dump();
+    EXPECT_NEAR(row.at("lag").get<double>(), 0.0, 0.051) << row.dump();
+    EXPECT_NEAR(row.at("ghosts").get<double>(), 0.0, 0.02) << row.dump();
+    EXPECT_NEAR(row.at("flicker").get<double>(), 1.0, 0.02) << row.dump();
+  }
+  EXPECT_NE(result.out.find("irradiance-cache"), std::string::npos);
+  EXPECT_TRUE(std::filesystem::exists(path("page/frames/direct_0009.png")));
+  // Nothing moves: said, not measured.
+  folder_.write("still.json", R"({"model": "floor.obj"})");
+  const RunResult still = lucerna("bench dynamic still.json --out still");
+  EXPECT_EQ(still.exitCode, 2);
+  EXPECT_NE(still.err.find("nothing moves"), std::string::npos) << still.err;
 }
 
 }  // namespace
