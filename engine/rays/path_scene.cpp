@@ -46,11 +46,6 @@ PathScene::PathScene(const Scene& scene, const SceneFeatures& features, const gl
                                          &material.normalTexture, &material.metalTexture})
       texture->layer = PATH_NO_TEXTURE;
   setMaterials(scene);
-  if (hasCoats_) {
-    coats_.emplace("path coats", gl::Format::rgba32f, glm::ivec2(COAT_COSINES, COAT_ALPHAS),
-                   gl::Sampling{gl::Filter::linear, gl::Filter::linear});
-    coats_->upload(gl::Texels::rgbaFloat, coatTable().data());
-  }
   isTextured_ = features_.diffuseTextures || features_.alphaMasks || features_.emissionTextures ||
                 features_.normalMaps || features_.metalMaps;
   if (isTextured_) uploadTextures(scene);
@@ -98,6 +93,11 @@ void PathScene::setMaterials(const Scene& scene) {
 }
 
 void PathScene::uploadRest(const Scene& scene) {
+  if (hasCoats_ && !coats_) {
+    coats_.emplace("path coats", gl::Format::rgba32f, glm::ivec2(COAT_COSINES, COAT_ALPHAS),
+                   gl::Sampling{gl::Filter::linear, gl::Filter::linear});
+    coats_->upload(gl::Texels::rgbaFloat, coatTable().data());
+  }
   std::vector<float> pickDensity;
   if (settings_.nextEvent) {
     const LightTable table = lightTable(scene, rays_.origin());

@@ -164,8 +164,10 @@ SceneChange poseAt(Scene& scene, double seconds) {
   change.materials = motion[Part::media] && !isSame(materials, scene.materials);
   change.environment = pose(Part::environment, scene.environment);
   if (motion[Part::views]) {
+    const glm::vec3 background = scene.background;
     motion[Part::views](scene, seconds);
     change.views = true;
+    change.environment = change.environment || scene.background != background;
   }
   return change;
 }

@@ -18,8 +18,9 @@ namespace lucerna {
 /// What differs between two times.
 struct SceneChange {
   std::vector<std::size_t> meshes;  ///< whose vertices are others, rising
-  bool sun = false, lamps = false, materials = false, media = false, environment = false;
-  bool views = false;  ///< cameras, exposure, background
+  bool sun = false, lamps = false, materials = false, media = false;
+  bool environment = false;  ///< or the background
+  bool views = false;  ///< cameras, exposure
 
   bool anyLight() const { return sun || lamps || environment; }
   bool any() const { return !meshes.empty() || anyLight() || materials || media || views; }

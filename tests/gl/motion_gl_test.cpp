@@ -80,6 +80,20 @@ TEST_F(MotionGl, SceneFarFromTheOriginFollowsToo) {
   EXPECT_LT(largestDifference(followed(scene, settingsOf("direct"), 0.75), anew(still, settingsOf("direct"))), 1e-5);
 }
 
+TEST_F(MotionGl, TheBackgroundFollowsToo) {
+  const test::TempFolder folder;
+  folder.write("m.obj", "v 0 0 -1\nv 0.1 0 -1\nv 0 0.1 -1\nvn 0 0 1\nf 1//1 2//1 3//1\n");
+  const auto file = folder.write("s.json", R"({"model": "m.obj", "environment": null, "sun": null,
+      "points": [{"position": [0, 0, 1], "intensity": [1, 1, 1]}],
+      "camera": {"position": [0, 0, 1], "direction": [0, 0, -1], "fov": 60},
+      "background": {"times": [0, 1], "values": [[1, 1, 1], [1, 3, 5]]}})");
+  for (const char* technique : {"direct", "path"}) {
+    Scene scene = loadScene(file);
+    const Image found = followed(scene, settingsOf(technique), 0.5);
+    EXPECT_LT(glm::distance(found.at(1, 1), glm::vec3(1, 2, 3)), 1e-3f) << technique;
+  }
+}
+
 // A lamp above a white floor: radiance albedo / pi * I h / d^3 beneath it, moved and dimmed by curves.
 TEST_F(MotionGl, ALampLightsFromWhereItIsThen) {
   const test::TempFolder folder;
