@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "shared/html.hpp"
 
 #include "base/data.hpp"

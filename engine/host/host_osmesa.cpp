@@ -11,6 +11,7 @@
 #include <dlfcn.h>
 
 #include <array>
+#include <cstdint>
 
 namespace lucerna {
 

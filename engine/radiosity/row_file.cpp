@@ -7,6 +7,7 @@
 #include <cstring>
 #include <fstream>
 #include <numeric>
+#include <span>
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>

@@ -154,7 +154,7 @@ std::vector<double> keyTimesIn(const Json& json) {
   std::vector<double> times;
   addTimes(json, times);
   std::ranges::sort(times);
-  times.erase(std::ranges::unique(times).begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
   return times;
 }
 

@@ -117,7 +117,7 @@ void finishMotion(Scene& scene) {
   if (!scene.motion) return;
   SceneMotion& motion = *scene.motion;
   std::ranges::sort(motion.meshes);
-  motion.meshes.erase(std::ranges::unique(motion.meshes).begin(), motion.meshes.end());
+  motion.meshes.erase(std::unique(motion.meshes.begin(), motion.meshes.end()), motion.meshes.end());
   motion.restVertices = scene.vertices;
   motion.restIndices = scene.indices;
   motion.bounds = scene.bounds;
