@@ -288,10 +288,10 @@ std::map<std::size_t, glm::dmat4> readObjects(const Value& objects, const Scene&
                          }},
                         {"scale",
                          [&](const Value& v) {
-                           const Json& sample = v.isCurve() ? v.json.at("values") : v.json;
-                           const bool isVector = v.isCurve()
-                                                     ? sample.is_array() && !sample.empty() && sample[0].is_array()
-                                                     : sample.is_array();
+                           const bool isCurve = v.isCurve() && v.json.contains("values");
+                           const Json& sample = isCurve ? v.json.at("values") : v.json;
+                           const bool isVector = isCurve ? sample.is_array() && !sample.empty() && sample[0].is_array()
+                                                         : sample.is_array();
                            scale = isVector ? v.vector("a factor, or an array of 3") : glm::dvec3(v.number("a factor"));
                          }},
                         {"pivot", [&](const Value& v) { pivot = v.vector(); }}});

@@ -93,7 +93,18 @@ put("scene_json",
     '{"model":"m.obj","scale":1,"media":{"x":{"catalogue":"milk","scale":2},'
     '"y":{"scattering":[1,1,1],"absorption":[0.1,0.1,0.1],"g":0.5,"density":{"file":"d.raw","size":[2,2,2]}}},'
     '"materials":{"a":{"bsdf":"dielectric","ior":1.5,"interior":"x","priority":1,"roughness":0.1}},'
-    '"cameraMedium":"y","keyFrames":"k.txt"}')
+    '"cameraMedium":"y","keyFrames":"k.txt"}',
+    '{"model":"m.obj","sun":{"direction":{"times":[0,1],"values":[[0,-1,0],[1,-1,0]]},"irradiance":[1,1,1]},'
+    '"camera":{"position":{"times":[0,2],"values":[[0,0,4],[1,0,4]],"interpolation":"cubic","loop":true},'
+    '"target":[0,0,0],"fov":{"times":[0,1,3],"values":[40,60,20]}},'
+    '"points":[{"position":[0,3,0],"intensity":{"times":[0,1],"values":[[1,1,1],[0,0,0]],"interpolation":"step"}}],'
+    '"objects":{"o":{"turn":{"axis":[0,1,0],"degrees":{"times":[0,2],"values":[0,360]}},"pivot":[1,0,0],'
+    '"translation":{"times":[-1,1],"values":[[0,0,0],[1,0,0]]},"scale":{"times":[0,1],"values":[1,-1]}}},'
+    '"exposure":{"times":[0,1],"values":[1,2]},"background":{"times":[0,1],"values":[[0,0,0],[1,1,1]]}}',
+    '{"model":"m.obj","scale":1000,"sun":{"latitude":50,"day":172,"hour":{"times":[0,24],"values":[0,24],"loop":true},'
+    '"irradiance":[1,1,1],"turbidity":3},"objects":{"o":{"scale":[1,2,1]}},'
+    '"materials":{"a":{"emission":{"times":[0,1],"values":[[0,0,0],[1,1,1]]}}},'
+    '"media":{"x":{"sigma_s":{"times":[0,1],"values":[[1,1,1],[0,0,0]]},"sigma_a":[0,0,0]}}}')
 put("original_scene_json",
     '{"scene":{"camera":[0,0,4],"cameraLookAt":[0,0,0],"fov":45,"lightPos":[0,4,0],"lightColor":[1,1,1],'
     '"lightIntensity":100,"scale":1},'
@@ -104,6 +115,7 @@ put("mtl", "newmtl Milk.001\nNi 1.33\nd 0.5\nKd 1 1 1\nnewmtl wall\nTr 0.2\n", "
 
 numbers = struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0) + struct.pack("<12B", *[0, 1, 2, 0] * 3)
 numbers += struct.pack("<16f", *[1 if k % 5 == 0 else 0 for k in range(16)])
+numbers += struct.pack("<2f", 0.0, 1.5) + struct.pack("<18f", *[0.1 * k + 0.1 for k in range(18)])
 gltf = {
     "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
     "nodes": [{"children": [1, 2, 3]},
@@ -130,15 +142,28 @@ gltf = {
                   {"bufferView": 1, "componentType": 5121, "count": 3, "type": "VEC4", "normalized": True},
                   {"bufferView": 1, "componentType": 5121, "count": 3, "type": "SCALAR", "sparse": {
                       "count": 1, "indices": {"bufferView": 1, "componentType": 5121}, "values": {"bufferView": 1}}},
-                  {"bufferView": 2, "componentType": 5126, "count": 1, "type": "MAT4"}],
+                  {"bufferView": 2, "componentType": 5126, "count": 1, "type": "MAT4"},
+                  {"bufferView": 3, "componentType": 5126, "count": 2, "type": "SCALAR"},
+                  {"bufferView": 4, "componentType": 5126, "count": 2, "type": "VEC3"},
+                  {"bufferView": 4, "componentType": 5126, "count": 2, "type": "VEC4"},
+                  {"bufferView": 4, "componentType": 5126, "count": 6, "type": "VEC3"}],
+    "animations": [{"channels": [{"sampler": k, "target": {"node": n, "path": path}} for k, n, path in (
+                        (0, 2, "translation"), (1, 2, "rotation"), (2, 0, "scale"), (3, 1, "weights"))],
+                    "samplers": [{"input": 5, "output": 6}, {"input": 5, "output": 7, "interpolation": "STEP"},
+                                 {"input": 5, "output": 8, "interpolation": "CUBICSPLINE"},
+                                 {"input": 5, "output": 5}]}],
     "bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 12},
-                    {"buffer": 0, "byteOffset": 48, "byteLength": 64}],
+                    {"buffer": 0, "byteOffset": 48, "byteLength": 64},
+                    {"buffer": 0, "byteOffset": 112, "byteLength": 8},
+                    {"buffer": 0, "byteOffset": 120, "byteLength": 72}],
     "buffers": [{"byteLength": len(numbers)}]}
 inside = json.dumps(gltf)
 inside += " " * (-len(inside) % 4)
 gltf["buffers"][0]["uri"] = "data:;base64," + base64.b64encode(numbers).decode()
-put("gltf", json.dumps(gltf), b"glTF" + struct.pack("<III", 2, 28 + len(inside) + len(numbers), len(inside)) + b"JSON" +
-    inside.encode() + struct.pack("<I", len(numbers)) + b"BIN\0" + numbers)
+moving = dict(gltf, skins=[{"joints": [0, 1, 2]}])  # the other's joint is out of range
+put("gltf", json.dumps(gltf), json.dumps(moving),
+    b"glTF" + struct.pack("<III", 2, 28 + len(inside) + len(numbers), len(inside)) + b"JSON" + inside.encode() +
+    struct.pack("<I", len(numbers)) + b"BIN\0" + numbers)
 
 put("key_frames",
     "# a path\np 4 2 4 d -1 -0.3 -1 u 0 1 0 f 45\np 3 2 5 d -0.8 -0.3 -1 u 0 1 0 r 1 0 0 a 1.5\n",

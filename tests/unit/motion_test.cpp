@@ -224,6 +224,7 @@ TEST_F(MovingScene, WrongCurvesAreNamedByFileAndKey) {
            {R"("points": [{"position": [0,0,0], "intensity": {"times": [0, 1], "values": [[1,1,1],[-1,1,1]]}}])",
             "points[0].intensity\" at 1 s"},
            {R"("scale": {"times": [0, 1], "values": [1, 2]})", "scale"},
+           {R"("objects": {"right": {"scale": {"times": [0, 1]}}})", "a curve with as many"},
            {R"("objects": {"middle": {"translation": [0, 0, 0]}})",
             "a mesh of the model, of which it has 2 ('left', 'right')"},
            {R"("objects": {"left": {"turn": {"degrees": 4}}})", "axis"},
