@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace lucerna::demo {
 
@@ -82,10 +83,11 @@ std::vector<StabilityRow> runStability(const StabilityContext& context, const st
   addPathCases(cases);
   addMediaCases(cases);
   addLimitCases(cases);
+  addMotionCases(cases);
   std::string known;
   for (const StabilityCase& c : cases)
     if (known.find(c.technique) == std::string::npos) known += (known.empty() ? "" : ", ") + c.technique;
-  if (!technique.empty()) std::erase_if(cases, [&](const StabilityCase& c) { return c.technique != technique; });
+  std::erase_if(cases, [&](const StabilityCase& c) { return technique.empty() ? c.isLong : c.technique != technique; });
   if (cases.empty()) throwBadInput("--technique {}: unknown; expected one of {}", technique, known);
   Hash names;
   for (const StabilityCase& c : cases)
@@ -100,8 +102,10 @@ std::vector<StabilityRow> runStability(const StabilityContext& context, const st
     if (const auto kept = part.load(i)) {
       rows.push_back(keptRow(cases[i], *kept));
     } else {
-      rows.push_back(runCase(cases[i], context));
-      part.store(i, keptOf(rows.back()));
+      StabilityRow row = runCase(cases[i], context);
+      if (interrupted()) return rows;  // long rows end early then
+      part.store(i, keptOf(row));
+      rows.push_back(std::move(row));
     }
     progress.update(static_cast<int>(rows.size()));
   }
@@ -188,7 +192,8 @@ int runStabilityCommand(const StabilityOptions& options) {
 
 Work addBenchStability(Command app) {
   auto options = std::make_shared<StabilityOptions>();
-  app.addOption("--technique", options->technique, "only the rows of this technique");
+  app.addOption("--technique", options->technique,
+                "only the rows of this technique; motion: 10,000 frames by each, which takes minutes");
   app.addOption(
       "--compare", options->compare,
       "a table stored by --json: reports rows that are missing, fail now, expect another answer or allow more; "

@@ -36,9 +36,10 @@ struct StabilityContext {
 
 /// A row of the table. `run` may throw: that counts as a failure, with the message as its note.
 struct StabilityCase {
-  std::string technique;  ///< direct, rsm, lpv, radiosity, path
+  std::string technique;  ///< as named by Renderer; motion: long runs of all of them
   std::string name, parameter;
   std::function<Measurement(const StabilityContext&)> run;
+  bool isLong = false;  ///< takes minutes: left out unless its technique is asked for
 };
 
 void addLpvCases(std::vector<StabilityCase>& cases);
@@ -48,6 +49,8 @@ void addCacheCases(std::vector<StabilityCase>& cases);
 void addPictureCases(std::vector<StabilityCase>& cases);
 /// Cases of all techniques and lights: far from the origin, large faces.
 void addPlaceCases(std::vector<StabilityCase>& cases);
+/// Cases of scenes that move, of all techniques; technique "motion" has 10,000 frames of each.
+void addMotionCases(std::vector<StabilityCase>& cases);
 void addPathCases(std::vector<StabilityCase>& cases);
 /// Cases of light at its limits, of several techniques.
 void addLimitCases(std::vector<StabilityCase>& cases);
@@ -60,8 +63,8 @@ struct StabilityRow {
   double seconds = 0.0;
   bool passed = false;
 };
-/// Runs the rows of `technique`, or of all, that belong to the part; stored ones are read from its folder. Stops when
-/// interrupted.
+/// Runs the rows of `technique`, or all that are not long, that belong to the part; stored ones are read from its
+/// folder. Stops when interrupted.
 std::vector<StabilityRow> runStability(const StabilityContext& context, const std::string& technique, bool quiet,
                                        const PartOptions& part);
 nlohmann::ordered_json stabilityJson(const std::vector<StabilityRow>& rows);

@@ -505,7 +505,7 @@ TEST_F(Measure, StabilityIsComparedWithATableThatWasKept) {
 // tests/stability.json`. The short form leaves out the techniques whose rows take long.
 TEST_F(Measure, NoStabilityRowIsWorseThanTheKeptTable) {
   const std::vector<std::string> techniques =
-      test::longTests() ? std::vector<std::string>{"direct", "rsm", "lpv", "radiosity", "path"}
+      test::longTests() ? std::vector<std::string>{"direct", "rsm", "lpv", "irradiance-cache", "radiosity", "path"}
                         : std::vector<std::string>{"direct", "rsm"};
   std::size_t rows = 0;
   double seconds = 0.0;
@@ -522,6 +522,13 @@ TEST_F(Measure, NoStabilityRowIsWorseThanTheKeptTable) {
   }
   EXPECT_LT(seconds, 600.0);
   if (test::longTests()) { EXPECT_GE(rows, 247u); }
+}
+
+TEST_F(Measure, TenThousandFramesOfALoopEndAsTheyBegan) {
+  if (!test::longTests()) GTEST_SKIP() << "takes minutes; run by tests/long";
+  const RunResult result = RUN_LUCERNA("bench stability --technique motion --json '" + path("s.json") + "'");
+  EXPECT_EQ(result.exitCode, 0) << result.out;
+  EXPECT_EQ(json("s.json").at("rows").size(), 35u);
 }
 
 TEST_F(Measure, AFullDiskIsOneLine) {
