@@ -7,8 +7,11 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <cmath>
+#include <cstddef>
 #include <filesystem>
 #include <fstream>
+#include <numbers>
 #include <string>
 
 namespace {
@@ -93,6 +96,102 @@ TEST_F(Motion, BenchDynamicKnowsAFloorUnderALampThatSwitches) {
   const RunResult still = lucerna("bench dynamic still.json --out still");
   EXPECT_EQ(still.exitCode, 2);
   EXPECT_NE(still.err.find("nothing moves"), std::string::npos) << still.err;
+}
+
+// A Lambert floor under a sun whose shadows move by 1 a second: radiance albedo E cos(theta) / pi, tan(theta) = t - 1.
+// The floor fills the picture, and nothing else reflects.
+TEST_F(Motion, BenchDynamicKnowsTheCosineOfASunThatTurns) {
+  folder_.write("floor.obj",
+                "mtllib m.mtl\nusemtl grey\nv -9 0 -9\nv 9 0 -9\nv 9 0 9\nv -9 0 9\nvn 0 1 0\nf 4//1 3//1 2//1 1//1\n");
+  folder_.write("m.mtl", "newmtl grey\nKd 0.5 0.5 0.5\n");
+  folder_.write("sun.json", R"({"model": "floor.obj", "environment": null,
+      "camera": {"position": [0, 2, 0], "direction": [0, -1, 0], "up": [0, 0, -1], "fov": 50},
+      "sun": {"direction": {"times": [0, 4], "values": [[-1, -1, 0], [3, -1, 0]]}, "irradiance": [3, 3, 3],
+              "angularDiameter": 0}})");
+  const RunResult result = lucerna(
+      "bench dynamic sun.json --techniques direct irradiance-cache path --set path.samples=4 --frames 9 --fps 2 "
+      "--size 16x12 --reference-samples 16 --references references --out page");
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  const nlohmann::json json = nlohmann::json::parse(std::ifstream(path("page/dynamic.json")));
+  const auto isRight = [](const nlohmann::json& radiance, const std::string& what) {
+    ASSERT_EQ(radiance.size(), 9u) << what;
+    for (std::size_t k = 0; k < 9; ++k) {
+      const double tangent = 0.5 * static_cast<double>(k) - 1.0;
+      const double right = 0.5 * 3.0 / (std::numbers::pi * std::sqrt(1.0 + tangent * tangent));
+      EXPECT_NEAR(radiance[k].get<double>(), right, 1e-4 * right) << what << ", moment " << k;
+    }
+  };
+  isRight(json.at("radiance"), "references");
+  EXPECT_EQ(json.at("techniques").size(), 3u);
+  for (const nlohmann::json& row : json.at("techniques")) {
+    isRight(row.at("radiance"), row.at("technique"));
+    EXPECT_LT(row.at("worst").get<double>(), 1e-4) << row.dump();
+    EXPECT_NEAR(row.at("lag").get<double>(), 0.0, 1e-9) << row.dump();
+    EXPECT_NEAR(row.at("ghosts").get<double>(), 0.0, 1e-3) << row.dump();
+    EXPECT_NEAR(row.at("flicker").get<double>(), 1.0, 1e-3) << row.dump();
+  }
+}
+
+// Two black plates below a sun in the zenith; one slides aside at 0.25 units a second, and a strip of the white floor
+// as wide as the slit is lit. The camera, below them, sees 1 unit of the floor across, 0.5 on each side of the middle.
+TEST_F(Motion, BenchDynamicKnowsTheStripBehindAWallThatOpens) {
+  folder_.write("wall.obj",
+                "mtllib m.mtl\no floor\nusemtl white\nv -9 0 -9\nv 9 0 -9\nv 9 0 9\nv -9 0 9\nvn 0 1 0\n"
+                "f 4//1 3//1 2//1 1//1\nusemtl black\no left\nv -9 2 -9\nv -0.25 2 -9\nv -0.25 2 9\nv -9 2 9\n"
+                "f 8//1 7//1 6//1 5//1\no right\nv -0.25 2 -9\nv 9 2 -9\nv 9 2 9\nv -0.25 2 9\n"
+                "f 12//1 11//1 10//1 9//1\n");
+  folder_.write("m.mtl", "newmtl white\nKd 1 1 1\nnewmtl black\nKd 0 0 0\n");
+  folder_.write("wall.json", R"({"model": "wall.obj", "environment": null,
+      "camera": {"position": [0, 1, 0], "direction": [0, -1, 0], "up": [0, 0, -1], "fov": 53.13010235},
+      "sun": {"direction": [0, -1, 0], "irradiance": [3, 3, 3], "angularDiameter": 0},
+      "objects": {"right": {"translation": {"times": [0, 4], "values": [[0, 0, 0], [1, 0, 0]]}}}})");
+  const RunResult result = lucerna(
+      "bench dynamic wall.json --techniques direct irradiance-cache --set shadow.transport=rays --frames 9 --fps 4 "
+      "--filter box --size 32x32 --reference-samples 256 --references references --out page");
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  const nlohmann::json json = nlohmann::json::parse(std::ifstream(path("page/dynamic.json")));
+  // Edges lie on borders of pixels: 2 more of the 32 columns are lit in each moment.
+  const auto isRight = [](const nlohmann::json& radiance, const std::string& what) {
+    ASSERT_EQ(radiance.size(), 9u) << what;
+    for (std::size_t k = 0; k < 9; ++k)
+      EXPECT_NEAR(radiance[k].get<double>() * std::numbers::pi / 3.0, static_cast<double>(k) / 16.0, 1e-4)
+          << what << ", moment " << k;
+  };
+  isRight(json.at("radiance"), "references");
+  for (const nlohmann::json& row : json.at("techniques")) {
+    isRight(row.at("radiance"), row.at("technique"));
+    EXPECT_LT(row.at("worst").get<double>(), 1e-3) << row.dump();
+    EXPECT_NEAR(row.at("lag").get<double>(), 0.0, 0.051) << row.dump();
+    EXPECT_NEAR(row.at("ghosts").get<double>(), 0.0, 0.02) << row.dump();
+  }
+}
+
+// The budgets of a technique are rows of their own: with more samples the irradiance cache is nearer to the truth.
+TEST_F(Motion, BenchDynamicMeasuresBudgets) {
+  const RunResult result =
+      lucerna("bench dynamic '" LUCERNA_SOURCE_DIR
+              "/assets/cornell/moving.json' --point 'irradiance-cache cache.samples=8' --point 'irradiance-cache "
+              "cache.samples=256' --frames 2 --size 16x16 --reference-samples 256 --references references --out page");
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  const nlohmann::json rows = nlohmann::json::parse(std::ifstream(path("page/dynamic.json"))).at("techniques");
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[0].at("technique"), "irradiance-cache samples=8");
+  EXPECT_LT(rows[1].at("mean").get<double>(), 0.8 * rows[0].at("mean").get<double>()) << rows.dump();
+  EXPECT_TRUE(std::filesystem::exists(path("page/frames/irradiance-cache-samples-256_0001.png")));
+}
+
+// Pictures drawn K moments late have the lag K, and one moment late they are all ghosts.
+TEST_F(Motion, BenchDynamicKnowsPicturesThatAreLate) {
+  for (const int late : {1, 3}) {
+    const RunResult result = lucerna(
+        "bench dynamic s.json --techniques direct --frames 12 --fps 8 --size 32x24 --reference-samples 64 "
+        "--references references --out page --late " +
+        std::to_string(late));
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    const nlohmann::json row = nlohmann::json::parse(std::ifstream(path("page/dynamic.json"))).at("techniques")[0];
+    EXPECT_NEAR(row.at("lag").get<double>(), late, 0.051) << row.dump();
+    if (late == 1) { EXPECT_NEAR(row.at("ghosts").get<double>(), 1.0, 0.05) << row.dump(); }
+  }
 }
 
 }  // namespace

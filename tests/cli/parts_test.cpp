@@ -175,6 +175,25 @@ TEST_F(FolderParts, RowsOfStability) {
   expectRefused(command + partOf(0, 2, "no") + " --compare x.json", "--compare");
 }
 
+TEST_F(FolderParts, MomentsOfBenchDynamic) {
+  const std::string shared =
+      "bench dynamic '" LUCERNA_SOURCE_DIR
+      "/assets/cornell/moving.json' --frames 4 --size 24x24 --reference-samples 16 --techniques direct";
+  const std::string command = shared + " --fps 2";
+  const auto references = [&](const char* name) { return " --references '" + path(name) + "'"; };
+  make(command + references("others"), 2);
+  ASSERT_EQ(RUN_LUCERNA(command + references("one") + " --quiet --out '" + path("one page") + "'").exitCode, 0);
+  ASSERT_EQ(RUN_LUCERNA(command + references("none") + whole() + " --quiet --out '" + path("all page") + "'").exitCode,
+            0);
+  EXPECT_TRUE(fs::is_empty(path("none")));  // all were made by the parts
+  nlohmann::json one = json("one page/dynamic.json"), all = json("all page/dynamic.json");
+  for (nlohmann::json* report : {&one, &all})
+    for (auto& row : report->at("techniques")) row.erase("ms");
+  EXPECT_EQ(one.at("radiance").size(), 4u);
+  EXPECT_EQ(one, all);
+  expectWrongJoinsRefused(command + references("others"), shared + " --fps 3" + references("others"));
+}
+
 TEST_F(FolderParts, FramesOfAWalk) {
   for (const char* technique : {"path --set path.samples=3", "rsm"}) {
     for (const char* name : {"parts", "whole", "one", "all", "other", "half"}) fs::remove_all(path(name));
