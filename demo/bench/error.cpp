@@ -7,6 +7,7 @@
 #include "base/image.hpp"
 #include "bench/bench.hpp"
 #include "bench/error_bench.hpp"
+#include "scene/motion.hpp"
 #include "shared/provenance.hpp"
 #include "shared/completions.hpp"
 #include "shared/shell.hpp"
@@ -73,6 +74,7 @@ std::vector<SweepPoint> pointsOf(const ErrorBenchOptions& options, const std::ve
 }
 
 void addSampling(std::vector<std::string>& words, const ErrorBenchOptions& options) {
+  if (options.time != 0.0) words.insert(words.end(), {"--time", fmt::format("{:.17g}", options.time)});
   if (options.pixelSamples != PictureOptions::kPixelSamples)
     words.insert(words.end(), {"--pixel-samples", std::to_string(options.pixelSamples)});
   if (options.filter != "box") words.insert(words.end(), {"--filter", options.filter});
@@ -110,6 +112,7 @@ Scene withoutHighlights(Scene scene) {
 }
 
 void ErrorBenchOptions::declareView(Command app) {
+  app.addOption("--time", time, "seconds at which a scene that moves is shown").range(-1e12, 1e12).showDefault();
   app.addOption("--camera", camera, "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");
   app.addOption("--size", size, "WIDTHxHEIGHT of the pictures").showDefault();
   addCompletions(app.addOption("--filter", filter,
@@ -162,6 +165,7 @@ ErrorBenchPlan::ErrorBenchPlan(const Scene& original, const ErrorBenchOptions& o
         points, [](const SweepPoint& point) { return point.picture.technique == "radiosity" && !point.byReadPixels; });
   title =
       fmt::format("{}, camera {}, {}x{}", scene.name, camera.name.empty() ? "default" : camera.name, size.x, size.y);
+  if (options.time != 0.0) title += fmt::format(", at {:g} s", options.time);
   withPath = std::find(techniques.begin(), techniques.end(), "path") != techniques.end();
   for (const SweepPoint& point : points)
     if (const TechniqueModel model = modelOf(point, measure::kindsOf(scene));
@@ -313,7 +317,7 @@ std::unique_ptr<ErrorBenchResult> benchScene(const CommonOptions& common, ErrorB
   common.apply();
   options.quiet = common.quiet;
   options.scene = sceneOrAtrium(options.scene);
-  const Scene scene = loadScene(options.scene);
+  const Scene scene = loadScene(options.scene, options.time);
   const auto host = common.makeHost(false);
   const gl::Context context;
   gl::ProgramLibrary programs;
@@ -384,7 +388,7 @@ int runReferences(ReferencesOptions options) {
   bench::ErrorBenchOptions& bench = options.bench;
   bench.quiet = options.common.quiet;
   bench.scene = bench::sceneOrAtrium(bench.scene);
-  const Scene scene = loadScene(bench.scene);
+  const Scene scene = loadScene(bench.scene, bench.time);
   const auto host = options.common.makeHost(false);
   const gl::Context context;
   gl::ProgramLibrary programs;

@@ -14,6 +14,7 @@ struct ErrorBenchOptions {
   std::string scene, camera, size = "160x90", out, references;
   std::vector<std::string> techniques;  ///< sweeps; empty: all, or none if there are points
   std::vector<std::string> points;  ///< pictures besides, as parseSweepPoint() takes them
+  double time = 0.0;  ///< at which the scene is posed, seconds
   double budget = 120.0;  ///< seconds for references and path tracing together
   std::uint64_t referenceSamples = 0;  ///< 0: by time
   int frames = 5, pixelSamples = PictureOptions::kPixelSamples;

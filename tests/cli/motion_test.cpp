@@ -180,6 +180,23 @@ TEST_F(Motion, BenchDynamicMeasuresBudgets) {
   EXPECT_TRUE(std::filesystem::exists(path("page/frames/irradiance-cache-samples-256_0001.png")));
 }
 
+// A moment's errors: the card has moved by then, and so have references and pictures.
+TEST_F(Motion, BenchErrorMeasuresAMoment) {
+  nlohmann::json reports[2];
+  for (int k = 0; k < 2; ++k) {
+    const RunResult result = lucerna(
+        "bench error s.json --techniques direct --size 24x16 --reference-spp 64 --frames 1 "
+        "--references references --out out" +
+        std::to_string(k) + " --json error.json --time " + std::to_string(2 * k));
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    reports[k] = nlohmann::json::parse(std::ifstream(path("error.json")));
+  }
+  EXPECT_NE(reports[1].at("bench").get<std::string>().find("at 2 s"), std::string::npos) << reports[1].at("bench");
+  EXPECT_NE(reports[1].at("command").get<std::string>().find("--time 2"), std::string::npos);
+  EXPECT_EQ(reports[0].at("command").get<std::string>().find("--time"), std::string::npos);
+  EXPECT_NE(reports[0].at("rows")[0].at("l2"), reports[1].at("rows")[0].at("l2"));
+}
+
 // Pictures drawn K moments late have the lag K, and one moment late they are all ghosts.
 TEST_F(Motion, BenchDynamicKnowsPicturesThatAreLate) {
   for (const int late : {1, 3}) {
