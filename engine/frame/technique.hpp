@@ -11,6 +11,7 @@
 #include "frame/stage_picture.hpp"
 #include "gl/pass.hpp"
 #include "gl/time_query.hpp"
+#include "scene/motion.hpp"
 
 #include <memory>
 #include <span>
@@ -32,6 +33,8 @@ class FrameTechnique {
   virtual gl::ShaderFlags surfaceFlags() const { return {}; }
   /// The depth texture is another now, of the new size.
   virtual void resize() {}
+  /// The scene has moved, and the parts with it. False: make another.
+  virtual bool follow(const SceneChange&) { return false; }
 
   // Each frame.
   /// Passes before shading. Returns whether depth was drawn.

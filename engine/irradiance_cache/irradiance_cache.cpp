@@ -59,6 +59,7 @@ IrradianceCache::IrradianceCache(gl::ProgramLibrary& programs, const gl::Capabil
       scene_(traced),
       rayOrigin_(scene_.origin() - origin),
       referenceIrradiance_(typicalOf(scene)),
+      typicalIrradiance_(referenceIrradiance_),
       clearTexture_(capabilities.clearTexture),
       cached_(settings.bounces == IrradianceCacheSettings::kAllBounces && light != Light::direct) {
   CHECK(settings.rays >= 1 && settings.rays <= CACHE_LANES && CACHE_LANES % settings.rays == 0, "rays = {}",
@@ -117,10 +118,10 @@ IrradianceCache::IrradianceCache(gl::ProgramLibrary& programs, const gl::Capabil
   path_.iterations = capabilities.softwareRenderer ? kSoftwareIterations : kMostIterations;
 
   const gl::ShaderFlags common = lookupFlags(settings);
-  const gl::ShaderFlags rays = rayFlags(lanes);
+  const gl::ShaderFlags& rays = rays_ = rayFlags(lanes);
   mark_ = &programs.loadCompute("cache mark records", "irradiance_cache/mark.comp", gl::with(common, {{"CLAIM", 0}}));
   claim_ = &programs.loadCompute("cache claim records", "irradiance_cache/mark.comp", gl::with(common, {{"CLAIM", 1}}));
-  keep_ = &programs.loadCompute("cache keep records", "irradiance_cache/keep.comp", common);
+  keep_ = &programs.loadCompute("cache keep records", "irradiance_cache/keep.comp", gl::with(common, {{"FOLLOWS", 0}}));
   list_ = &programs.loadCompute("cache list records", "irradiance_cache/list.comp", rays);
   if (settings.transport == CacheTransport::rays)
     paths_ = &programs.loadCompute("cache paths", "irradiance_cache/paths.comp",
@@ -152,6 +153,20 @@ void IrradianceCache::forget() {
   cascades_.clear();
   counts_ = {};
   if (gather_) gather_->forget();
+}
+
+bool IrradianceCache::follow(const Scene& scene, const std::vector<Bounds>& moved) {
+  const bool isSame = settings_.transport == CacheTransport::rays && rays_ == rayFlags(settings_.rays);
+  if (!isSame) return false;
+  if (!keepFollowed_)
+    keepFollowed_ = &programs_->loadCompute("cache keep records", "irradiance_cache/keep.comp",
+                                            gl::with(lookupFlags(settings_), {{"FOLLOWS", 1}}));
+  moved_.insert(moved_.end(), moved.begin(), moved.end());
+  scene_.fill(path_);
+  typicalIrradiance_ = typicalOf(scene);
+  prefetchedFrom_.reset();
+  followed_ = true;
+  return true;
 }
 
 void IrradianceCache::place(const Inputs& inputs) {
@@ -189,14 +204,18 @@ void IrradianceCache::bindRecords() const {
 }
 
 // After the grids have moved, copies records that are still inside to a new list and enters them in the slots.
-void IrradianceCache::keep() {
+void IrradianceCache::keep(const gl::Program& program) {
   std::swap(records_[0], records_[1]);
   std::swap(work_[0], work_[1]);
   work_[0].upload(0, kWorkWords * sizeof(GLuint), noWork().data());
   slotTable_.clear();
   const gl::ComputePass pass("cache keep records", gl::Barrier::storage | gl::Barrier::textureFetch);
-  keep_->use();
+  program.use();
   bindRecords();
+  if (followed_) {
+    program.set("movedBoxes", static_cast<unsigned>(moved_.size()));
+    movedBoxes_.bindStorage(CACHE_MOVED_BUFFER);
+  }
   records_[1].bindStorage(CACHE_RECORDS_BUFFER);
   records_[0].bindStorage(CACHE_KEPT_BUFFER);
   slotTable_.buffer().bindStorage(CACHE_SLOTS_BUFFER);
@@ -310,15 +329,37 @@ void IrradianceCache::store(float mostChange) {
   pass.dispatchIndirect(work_[0]);
 }
 
+// Stored values are of the order of the scene's light, also when that has become another.
+void IrradianceCache::beginToFollow(bool fades) {
+  constexpr float kMuch = 16.0f;
+  const float change = typicalIrradiance_ / referenceIrradiance_;
+  if (!fades || change > kMuch || change < 1.0f / kMuch) {
+    referenceIrradiance_ = typicalIrradiance_;
+    forget();
+    return;
+  }
+  std::vector<shared::MovedBox> boxes;
+  for (const Bounds& box : moved_) boxes.push_back({glm::vec3(box.min), 0.0f, glm::vec3(box.max), 0.0f});
+  boxes.resize(std::max(boxes.size(), std::size_t{1}));
+  const std::size_t bytes = boxes.size() * sizeof(shared::MovedBox);
+  if (movedBoxes_.bytes() < bytes)
+    movedBoxes_ = gl::Buffer("cache moved boxes", bytes, nullptr, gl::Usage::dynamicDraw);
+  movedBoxes_.upload(0, bytes, boxes.data());
+}
+
 void IrradianceCache::update(const Inputs& inputs, int rounds) {
+  if (followed_) beginToFollow(inputs.fades);
   const bool moved = !cascades_.empty() &&
                      !std::equal(cascades_.begin(), cascades_.end(), inputs.cascades.begin(), inputs.cascades.end(),
                                  [](const Cascade& a, const Cascade& b) { return a.firstCell == b.firstCell; });
   const bool cut = cascades_.empty() || isCut(cascades_.front(), inputs.cascades.front());
-  const float mostChange = inputs.fades && !cut ? settings_.mostChange : 0.0f;
+  const float mostChange = inputs.fades && !cut && !followed_ ? settings_.mostChange : 0.0f;
   place(inputs);
   cascades_ = inputs.cascades;
-  if (moved) keep();
+  if (followed_ && !cut) keep(*keepFollowed_);
+  else if (moved) keep(*keep_);
+  followed_ = false;
+  moved_.clear();
   mark(inputs);
   if (settings_.transport == CacheTransport::gather) {
     gather(inputs);
@@ -407,7 +448,7 @@ double IrradianceCache::mostIterations() const {
 std::size_t IrradianceCache::gpuBytes() const {
   std::size_t bytes = cascadeConstants_.bytes() + cascadeConstantsBefore_.bytes() + constants_.bytes() +
                       pathConstants_.bytes() + lit_.bytes() + slotTable_.bytes() + keys_.bytes() + seen_.bytes() +
-                      irradiance_.bytes() + prefetchPoints_.bytes() + ring_->bytes() +
+                      irradiance_.bytes() + prefetchPoints_.bytes() + movedBoxes_.bytes() + ring_->bytes() +
                       (gather_ ? gather_->gpuBytes() : 0);
   for (std::size_t i = 0; i < 2; ++i) bytes += records_[i].bytes() + work_[i].bytes();
   return bytes;

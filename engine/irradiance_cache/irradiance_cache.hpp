@@ -65,6 +65,10 @@ class IrradianceCache {
   /// One frame: finds records for visible surfaces, and traces Settings::rays paths for those that lack some,
   /// Settings::leastRays for new ones. rounds: the paths of this many frames at once.
   void update(const Inputs& inputs, int rounds = 1);
+  /// The scene moves, and `traced` with it. The next update lights all records anew. Where the picture fades in they
+  /// stay in their places, outside of `moved` boxes (where surfaces were or are now, among the frame's positions), and
+  /// paths end at the light shown before; a whole picture is that of a new cache. False: other programs are needed.
+  bool follow(const Scene& scene, const std::vector<Bounds>& moved);
   /// Drops everything stored, as before the first frame.
   void forget();
 
@@ -117,8 +121,9 @@ class IrradianceCache {
   static constexpr std::size_t kWanted = 3, kWaiting = 4, kFrame = 5, kLitGroups = 6, kWorkWords = 36;
   static std::array<GLuint, kWorkWords> noWork();  ///< groups of all dispatches: 0 by 1 by 1
 
+  void beginToFollow(bool fades);
   void place(const Inputs& inputs);
-  void keep();
+  void keep(const gl::Program& program);
   void findPrefetchPoints();
   void mark(const Inputs& inputs);
   void list(int target, bool countsFading = false);
@@ -135,12 +140,14 @@ class IrradianceCache {
   const PathScene& scene_;
   glm::dvec3 rayOrigin_;  ///< in the frame's coordinates
   float referenceIrradiance_;  ///< of the order of the irradiance; only scales stored values
-  bool clearTexture_;
+  float typicalIrradiance_;  ///< the scene's now
+  bool clearTexture_, followed_ = false;  ///< the second: since the last update
   bool cached_;  ///< paths end at records
   std::size_t slots_, capacity_;
   std::uint32_t frame_ = 0;
   std::vector<Cascade> cascades_;  ///< of the previous frame
   shared::PathConstants path_{};
+  gl::ShaderFlags rays_;  ///< of the programs that trace
   const gl::Program *mark_, *claim_, *keep_, *list_, *store_;
   const gl::Program* paths_ = nullptr;  ///< only for rays
   const gl::Program* prefetch_ = nullptr;  ///< only if Settings::prefetch
@@ -148,7 +155,9 @@ class IrradianceCache {
   std::unique_ptr<LightGather> gather_;  ///< only for gather
   gl::Buffer cascadeConstants_,
       cascadeConstantsBefore_;  ///< the second: the cascades to which irradiance_ belongs when an update begins
-  gl::Buffer constants_, pathConstants_, lit_, prefetchPoints_;
+  const gl::Program* keepFollowed_ = nullptr;  ///< only in scenes that move
+  std::vector<Bounds> moved_;
+  gl::Buffer constants_, pathConstants_, lit_, prefetchPoints_, movedBoxes_;
   std::array<gl::Buffer, 2> records_, work_;  ///< the second of each: before the cascades moved
   gl::BufferTexture slotTable_, keys_, seen_;
   gl::Texture irradiance_;  ///< cacheIrradiance in GLSL: as looked up

@@ -51,10 +51,32 @@ IrradianceCacheFrame::IrradianceCacheFrame(const FrameParts& parts)
       visible_(parts.programs, parts.drawn(), parts.depth),
       cache_(parts.programs, parts.context.capabilities(), parts.scene, parts.traced.get(), parts.origin,
              cacheSettings(parts), cachedLight(parts.settings.component)) {
-  if (!Reflections::isNeeded(parts.features, settings().reflections)) return;
-  reflections_.emplace(parts.programs, parts.scene, cache_.rayFlags(1, true), settings().reflections,
-                       parts.settings.unmeasuredIterations);
+  if (parts.scene.motion)
+    for (const Mesh& mesh : parts.drawn().scene().meshes) meshes_.push_back(mesh.bounds);
+  makeReflections();
+}
+
+void IrradianceCacheFrame::makeReflections() {
+  if (!Reflections::isNeeded(parts_.features, settings().reflections)) return;
+  reflections_.emplace(parts_.programs, parts_.scene, cache_.rayFlags(1, true), settings().reflections,
+                       parts_.settings.unmeasuredIterations);
   reflections_->resize(visible_.size());
+}
+
+bool IrradianceCacheFrame::follow(const SceneChange& change) {
+  if (cacheSettings(parts_).fullFloat != cache_.settings().fullFloat) return false;
+  const Scene& drawn = parts_.drawn().scene();
+  std::vector<Bounds> moved;
+  for (const std::size_t mesh : change.meshes) {
+    const Bounds& now = drawn.meshes[mesh].bounds;
+    moved.push_back(meshes_[mesh]);
+    moved.push_back(now);
+    meshes_[mesh] = now;
+  }
+  if (!cache_.follow(parts_.scene, moved)) return false;
+  makeReflections();
+  settled_ = false;
+  return true;
 }
 
 void IrradianceCacheFrame::resize() {

@@ -30,6 +30,7 @@ class IrradianceCacheFrame final : public FrameTechnique {
     return gl::with(IrradianceCache::lookupFlags(cache_.settings()), {{"INDIRECT_SPECULAR", reflections_.has_value()}});
   }
   void resize() override;
+  bool follow(const SceneChange& change) override;
   /// Draws depth, unless no work is left for this view.
   bool record(gl::TimeQuery& timer, const FrameView& view, FrameEffort effort) override;
   void bindForShading() const override {
@@ -62,6 +63,7 @@ class IrradianceCacheFrame final : public FrameTechnique {
   Image readFromCells(const CascadeSettings& cascades, float blendBand, int paths) const;
 
  private:
+  void makeReflections();
   bool hasMaps() const { return maps_ && maps_->count() > 0; }
   const IrradianceCacheSettings& settings() const { return parts_.settings.of<IrradianceCacheSettings>(); }
 
@@ -74,6 +76,7 @@ class IrradianceCacheFrame final : public FrameTechnique {
   glm::dvec3 volumePosition_{0.0}, volumeDirection_{0.0};
   std::uint32_t since_ = 0;
   bool settled_ = false;
+  std::vector<Bounds> meshes_;  ///< of each, if they move: where it is
 };
 
 /// Null if the technique is another.

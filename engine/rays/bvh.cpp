@@ -76,6 +76,16 @@ void addPlane(BvhTriangle& t) {
   t.normal2 = static_cast<float>(n[(axis + 2) % 3] / n[axis]);
 }
 
+std::uint32_t flagsOf(const Material& material) {
+  return (material.alphaMasked ? BVH_TRIANGLE_MASKED : 0u) |
+         (material.emission != decltype(material.emission)(0.0f) ? BVH_TRIANGLE_EMISSIVE : 0u);
+}
+
+std::array<glm::vec3, 3> cornersOf(const Scene& scene, std::size_t triangle) {
+  const auto corner = [&](std::size_t k) { return scene.vertices[scene.indices[3 * triangle + k]].position; };
+  return {corner(0), corner(1), corner(2)};
+}
+
 // The triangles that rays can hit, in the space of the hierarchy, in the order of the scene.
 struct Triangles {
   std::vector<BvhTriangle> kept;
@@ -88,15 +98,13 @@ Triangles collect(const Scene& scene) {
   std::vector<std::uint32_t> flags(scene.triangleCount(), 0u);
   for (const Mesh& mesh : scene.meshes) {
     const Material& material = scene.materials[static_cast<std::size_t>(mesh.material)];
-    std::fill_n(flags.begin() + mesh.firstIndex / 3, mesh.indexCount / 3,
-                (material.alphaMasked ? BVH_TRIANGLE_MASKED : 0u) |
-                    (material.emission != decltype(material.emission)(0.0f) ? BVH_TRIANGLE_EMISSIVE : 0u));
+    std::fill_n(flags.begin() + mesh.firstIndex / 3, mesh.indexCount / 3, flagsOf(material));
   }
   Box bounds;
   for (std::size_t t = 0; t < scene.triangleCount(); ++t) {
     BvhTriangle triangle{};
-    const auto corner = [&](std::size_t k) { return scene.vertices[scene.indices[3 * t + k]].position; };
-    triangle.a = corner(0), triangle.b = corner(1), triangle.c = corner(2);
+    const std::array<glm::vec3, 3> corners = cornersOf(scene, t);
+    triangle.a = corners[0], triangle.b = corners[1], triangle.c = corners[2];
     if (!hasArea(triangle.a, triangle.b, triangle.c)) continue;
     triangle.id = static_cast<std::uint32_t>(t) | flags[t];
     bounds.add(boxOf(triangle));
@@ -389,12 +397,16 @@ void encodeBoxes(BvhNode& node, const std::array<Box, BVH_WIDTH>& children) {
     // Boxes of one grid are exact in double: a float plus 0..255 times a power of two.
     const double extent = static_cast<double>(all.max[axis]) - all.min[axis];
     int exponent = -126;
-    if (extent > 0.0) exponent = std::clamp(static_cast<int>(std::ceil(std::log2(extent / 255.0))), -126, 126);
+    if (extent > 0.0) {
+      const double mantissa = std::frexp(extent / 255.0, &exponent);  // of 0.5 to 1: the logarithm, rounded up
+      exponent = std::clamp(mantissa > 0.5 ? exponent : exponent - 1, -126, 126);
+    }
     while (std::ldexp(255.0, exponent) < extent) ++exponent;
     node.exponents |= static_cast<std::uint32_t>(exponent + 127) << 8 * axis;
+    const double perStep = std::ldexp(1.0, -exponent);
     for (std::size_t k = 0; k < BVH_WIDTH; ++k) {
       if (children[k].empty()) continue;
-      const auto steps = [&](float x) { return std::ldexp(static_cast<double>(x) - all.min[axis], -exponent); };
+      const auto steps = [&](float x) { return (static_cast<double>(x) - all.min[axis]) * perStep; };
       const auto low = static_cast<std::uint32_t>(std::clamp(std::floor(steps(children[k].min[axis])), 0.0, 255.0));
       const auto high = static_cast<std::uint32_t>(std::clamp(std::ceil(steps(children[k].max[axis])), 0.0, 255.0));
       const std::size_t word = 2 * static_cast<std::size_t>(axis) + k / 4, shift = 8 * (k % 4);
@@ -580,36 +592,162 @@ Bvh buildBvh(const Scene& scene, const BvhSettings& settings) {
   return bvh;
 }
 
-bool refitBvh(Bvh& bvh, const Scene& scene) {
-  const Triangles moved = collect(scene);
-  if (moved.kept.size() != bvh.statistics.triangles || moved.origin != bvh.origin) return false;
-  std::vector<std::uint32_t> place(scene.triangleCount(), ~0u);
-  for (std::size_t i = 0; i < moved.kept.size(); ++i)
-    place[moved.kept[i].id & BVH_TRIANGLE_ID_MASK] = static_cast<std::uint32_t>(i);
-  for (const BvhTriangle& triangle : bvh.triangles) {
-    const std::uint32_t id = triangle.id & BVH_TRIANGLE_ID_MASK;
-    if (id >= place.size() || place[id] == ~0u) return false;
+// What a hierarchy does not say: the way back from triangles to its leaves and from nodes to the root, and boxes of
+// children before they were put on a grid, which would grow with each turn.
+struct BvhRefit::Index {
+  std::vector<std::uint32_t> firstPlace;  ///< of the scene's triangle; those of the next one follow
+  std::vector<std::uint32_t> places;  ///< in Bvh::triangles
+  std::vector<std::uint32_t> leafOf;  ///< of a place: BVH_WIDTH * node + child
+  std::vector<std::uint32_t> parentOf;  ///< of a node: likewise
+  std::vector<std::array<Box, BVH_WIDTH>> children;  ///< of a node
+  std::vector<Box> meshes;  ///< in the scene's coordinates, of the triangles that rays can hit
+  double cost = 0.0, costAsBuilt = 0.0;  ///< half areas of all nodes
+};
+
+namespace {
+
+constexpr std::uint32_t kNoNode = ~0u;
+
+Box boxOf(const std::array<Box, BVH_WIDTH>& children) {
+  Box box;
+  for (const Box& child : children) box.add(child);
+  return box;
+}
+
+/// A child's box on its node's grid, outwards to floats.
+Box decoded(const BvhNode& node, std::size_t k) {
+  Box box;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double step = std::ldexp(1.0, static_cast<int>(node.exponents >> 8 * axis & 0xffu) - 127);
+    const std::size_t word = 2 * static_cast<std::size_t>(axis) + k / 4, shift = 8 * (k % 4);
+    const double low = static_cast<double>(node.origin[axis]) + step * (node.low[word] >> shift & 0xffu),
+                 high = static_cast<double>(node.origin[axis]) + step * (node.high[word] >> shift & 0xffu);
+    box.min[axis] = static_cast<float>(low), box.max[axis] = static_cast<float>(high);
+    if (static_cast<double>(box.min[axis]) > low) box.min[axis] = -nextAbove(-box.min[axis]);
+    if (static_cast<double>(box.max[axis]) < high) box.max[axis] = nextAbove(box.max[axis]);
   }
-  for (BvhTriangle& triangle : bvh.triangles) triangle = moved.kept[place[triangle.id & BVH_TRIANGLE_ID_MASK]];
-  bvh.magnitude = moved.magnitude;
-  std::vector<Box> boxes(bvh.nodes.size());
-  for (std::size_t n = bvh.nodes.size(); n-- > 0;) {  // children follow their parents
-    BvhNode& node = bvh.nodes[n];
-    std::array<Box, BVH_WIDTH> children;
+  return box;
+}
+
+}  // namespace
+
+BvhRefit::BvhRefit(const Bvh& bvh, const Scene& scene) : index_(std::make_unique<Index>()) {
+  Index& index = *index_;
+  index.firstPlace.assign(scene.triangleCount() + 1, 0u);
+  for (const BvhTriangle& triangle : bvh.triangles) ++index.firstPlace[(triangle.id & BVH_TRIANGLE_ID_MASK) + 1];
+  for (std::size_t t = 0; t < scene.triangleCount(); ++t) index.firstPlace[t + 1] += index.firstPlace[t];
+  index.places.resize(bvh.triangles.size());
+  std::vector<std::uint32_t> next = index.firstPlace;
+  for (std::size_t i = 0; i < bvh.triangles.size(); ++i)
+    index.places[next[bvh.triangles[i].id & BVH_TRIANGLE_ID_MASK]++] = static_cast<std::uint32_t>(i);
+
+  index.leafOf.resize(bvh.triangles.size());
+  index.parentOf.assign(bvh.nodes.size(), kNoNode);
+  index.children.resize(bvh.nodes.size());
+  for (std::size_t n = 0; n < bvh.nodes.size(); ++n) {
+    const BvhNode& node = bvh.nodes[n];
     std::size_t child = node.firstChild;
     for (std::size_t k = 0; k < BVH_WIDTH; ++k) {
-      const std::uint32_t meta = node.meta[k / 4] >> 8 * (k % 4) & 0xffu;
+      const std::uint32_t meta = node.meta[k / 4] >> 8 * (k % 4) & 0xffu,
+                          own = static_cast<std::uint32_t>(BVH_WIDTH * n + k);
+      if (meta == 0) continue;
+      index.children[n][k] = decoded(node, k);
       if (node.exponents >> (24 + k) & 1u) {
-        children[k] = boxes[child++];
+        index.parentOf[child++] = own;
       } else {
         for (std::uint32_t bits = meta >> 5, t = node.firstTriangle + (meta & 31u); bits; bits >>= 1, ++t)
-          children[k].add(boxOf(bvh.triangles[t]));
+          index.leafOf[t] = own;
       }
-      boxes[n].add(children[k]);
     }
-    encodeBoxes(node, children);
+    index.costAsBuilt += boxOf(index.children[n]).halfArea();
   }
-  return true;
+  index.cost = index.costAsBuilt;
+  index.meshes.resize(scene.meshes.size());
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m)
+    for (std::size_t t = scene.meshes[m].firstIndex / 3;
+         t < (scene.meshes[m].firstIndex + scene.meshes[m].indexCount) / 3; ++t)
+      if (index.firstPlace[t] != index.firstPlace[t + 1])
+        for (const glm::vec3& corner : cornersOf(scene, t)) index.meshes[m].add(corner);
+}
+
+BvhRefit::~BvhRefit() = default;
+BvhRefit::BvhRefit(BvhRefit&&) noexcept = default;
+BvhRefit& BvhRefit::operator=(BvhRefit&&) noexcept = default;
+
+bool BvhRefit::refit(Bvh& bvh, const Scene& scene, std::span<const std::size_t> meshes, Changed& changed) {
+  Index& index = *index_;
+  if (index.firstPlace.size() != scene.triangleCount() + 1 || index.meshes.size() != scene.meshes.size()) return false;
+
+  // The triangles.
+  std::vector<std::uint8_t> moves(bvh.triangles.size(), 0);
+  for (const std::size_t m : meshes) {
+    const Mesh& mesh = scene.meshes[m];
+    const std::uint32_t flags = flagsOf(scene.materials[static_cast<std::size_t>(mesh.material)]);
+    Box box;
+    for (std::size_t t = mesh.firstIndex / 3; t < (mesh.firstIndex + mesh.indexCount) / 3; ++t) {
+      const std::array<glm::vec3, 3> corners = cornersOf(scene, t);
+      const std::uint32_t first = index.firstPlace[t], end = index.firstPlace[t + 1];
+      if (hasArea(corners[0], corners[1], corners[2]) != (first != end)) return false;
+      if (first == end) continue;
+      BvhTriangle triangle{};
+      triangle.a = corners[0], triangle.b = corners[1], triangle.c = corners[2];
+      box.add(boxOf(triangle));
+      triangle.id = static_cast<std::uint32_t>(t) | flags;
+      for (glm::vec3* corner : {&triangle.a, &triangle.b, &triangle.c})
+        *corner = glm::vec3(glm::dvec3(*corner) - bvh.origin);
+      addPlane(triangle);
+      for (std::uint32_t i = first; i < end; ++i) {
+        bvh.triangles[index.places[i]] = triangle;
+        moves[index.places[i]] = 1;
+      }
+    }
+    index.meshes[m] = box;
+  }
+  Box all;
+  for (const Box& mesh : index.meshes) all.add(mesh);
+  if (floatingOrigin({glm::dvec3(all.min), glm::dvec3(all.max)}) != bvh.origin) return false;
+  bvh.magnitude = 0.0f;
+  if (!all.empty())
+    for (const glm::vec3& corner : {all.min, all.max})
+      for (int k = 0; k < 3; ++k)
+        bvh.magnitude =
+            std::max(bvh.magnitude, std::abs(static_cast<float>(static_cast<double>(corner[k]) - bvh.origin[k])));
+
+  // Their leaves, and the nodes above, children before their parents, whose numbers are less.
+  std::vector<bool> isOther(bvh.nodes.size(), false);
+  std::uint32_t last = kNoNode;
+  for (std::size_t place = 0; place < moves.size(); ++place) {
+    const std::uint32_t leaf = index.leafOf[place];
+    if (!moves[place] || leaf == last) continue;
+    last = leaf;
+    const std::size_t n = leaf / BVH_WIDTH, k = leaf % BVH_WIDTH;
+    const BvhNode& node = bvh.nodes[n];
+    const std::uint32_t meta = node.meta[k / 4] >> 8 * (k % 4) & 0xffu;
+    if (!isOther[n]) index.cost -= boxOf(index.children[n]).halfArea();
+    isOther[n] = true;
+    Box& box = index.children[n][k];
+    box = {};
+    for (std::uint32_t bits = meta >> 5, t = node.firstTriangle + (meta & 31u); bits; bits >>= 1, ++t)
+      box.add(boxOf(bvh.triangles[t]));
+  }
+  for (std::size_t n = bvh.nodes.size(); n-- > 0;) {
+    if (!isOther[n]) continue;
+    encodeBoxes(bvh.nodes[n], index.children[n]);
+    changed.nodes.push_back(static_cast<std::uint32_t>(n));
+    const Box box = boxOf(index.children[n]);
+    index.cost += box.halfArea();
+    if (index.parentOf[n] == kNoNode) continue;
+    const std::size_t parent = index.parentOf[n] / BVH_WIDTH;
+    Box& there = index.children[parent][index.parentOf[n] % BVH_WIDTH];
+    if (there.min == box.min && there.max == box.max) continue;
+    if (!isOther[parent]) index.cost -= boxOf(index.children[parent]).halfArea();
+    isOther[parent] = true;
+    there = box;
+  }
+  std::ranges::reverse(changed.nodes);
+  for (std::size_t place = 0; place < moves.size(); ++place)
+    if (moves[place]) changed.triangles.push_back(static_cast<std::uint32_t>(place));
+  return index.cost <= kMostGrowth * index.costAsBuilt;
 }
 
 }  // namespace lucerna

@@ -10,6 +10,9 @@
 #include "shared/bvh.h"
 
 #include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
 #include <vector>
 
 namespace lucerna {
@@ -45,8 +48,28 @@ struct Bvh {
 /// For any scene, even an empty one.
 Bvh buildBvh(const Scene& scene, const BvhSettings& settings = {});
 
-/// Refits the boxes to moved corners. False, with `bvh` unchanged, if it must be rebuilt: the scene has
-/// other triangles, others of them are degenerate, or the space needs another origin.
-bool refitBvh(Bvh& bvh, const Scene& scene);
+/// Fits a hierarchy to meshes that have moved, for the price of those.
+class BvhRefit {
+ public:
+  /// In Bvh::nodes and Bvh::triangles, rising.
+  struct Changed {
+    std::vector<std::uint32_t> nodes, triangles;
+  };
+  /// Of a hierarchy as built of that scene.
+  BvhRefit(const Bvh& bvh, const Scene& scene);
+  ~BvhRefit();
+  BvhRefit(BvhRefit&&) noexcept;
+  BvhRefit& operator=(BvhRefit&&) noexcept;
+
+  /// `meshes`: whose corners, or whose material's emission, are others. False if the hierarchy must be built anew,
+  /// whatever it is now: the scene has other triangles, others of them are degenerate, the space needs another origin,
+  /// or the boxes have become kMostGrowth as large.
+  bool refit(Bvh& bvh, const Scene& scene, std::span<const std::size_t> meshes, Changed& changed);
+
+ private:
+  static constexpr double kMostGrowth = 1.5;
+  struct Index;
+  std::unique_ptr<Index> index_;
+};
 
 }  // namespace lucerna

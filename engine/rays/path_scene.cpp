@@ -6,10 +6,13 @@
 #include "shared/bindings.h"
 #include "shared/coat.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <map>
+#include <span>
+#include <utility>
 
 namespace lucerna {
 
@@ -50,16 +53,48 @@ PathScene::PathScene(const Scene& scene, const SceneFeatures& features, const gl
                 features_.normalMaps || features_.metalMaps;
   if (isTextured_) uploadTextures(scene);
   triangleWords_ = 4 + (isTextured_ ? 1 : 0) + (features_.smoothNormals ? 3 : 0);
-  uploadRest(scene);
+  uploadLights(scene);
+  hash_.bytes(materialValues_.data(), materialValues_.size() * sizeof(shared::PathMaterial));
+  uploadTriangles(scene);
 }
 
-void PathScene::update(const Scene& scene, bool verticesMoved) {
+void PathScene::update(const Scene& scene, std::span<const std::size_t> meshes) {
   CHECK(scene.materials.size() == materialValues_.size(), "{} materials of {}", scene.materials.size(),
         materialValues_.size());
-  if (verticesMoved) rays_.update(scene);
+  // The hierarchy says what emits.
+  std::vector<std::size_t> others(meshes.begin(), meshes.end());
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+    const auto material = static_cast<std::size_t>(scene.meshes[m].material);
+    const bool emitted = materialValues_[material].emission != glm::vec3(0.0f),
+               emits = scene.materials[material].emission != glm::vec3(0.0f);
+    if (emitted != emits && scene.materials[material].emissionTexture < 0) others.push_back(m);
+  }
+  const glm::dvec3 origin = rays_.origin();
+  if (!others.empty()) rays_.update(scene, others);
   setMaterials(scene);
-  hash_ = {};
-  uploadRest(scene);
+  const std::vector<float> before = std::move(pickDensity_);
+  uploadLights(scene);
+  if (rays_.origin() != origin) {
+    uploadTriangles(scene);
+    return;
+  }
+  std::vector<std::uint32_t> changed;
+  std::vector<bool> isOther(scene.meshes.size(), false);
+  for (const std::size_t m : meshes) isOther[m] = true;
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+    const Mesh& mesh = scene.meshes[m];
+    for (std::uint32_t t = mesh.firstIndex / 3; t < (mesh.firstIndex + mesh.indexCount) / 3; ++t) {
+      if (!isOther[m] && (before.empty() || before[t] == pickDensity_[t])) continue;
+      writeTriangle(scene, t, static_cast<std::uint32_t>(mesh.material));
+      changed.push_back(t);
+    }
+  }
+  std::ranges::sort(changed);
+  const std::size_t words = 4 * static_cast<std::size_t>(triangleWords_);
+  forRuns(changed, [&](std::size_t first, std::size_t count) {
+    triangles_.upload(first * words * sizeof(std::uint32_t), count * words * sizeof(std::uint32_t),
+                      &triangleValues_[first * words]);
+  });
 }
 
 // All but the pictures.
@@ -92,23 +127,20 @@ void PathScene::setMaterials(const Scene& scene) {
   }
 }
 
-void PathScene::uploadRest(const Scene& scene) {
+void PathScene::uploadLights(const Scene& scene) {
   if (hasCoats_ && !coats_) {
     coats_.emplace("path coats", gl::Format::rgba32f, glm::ivec2(COAT_COSINES, COAT_ALPHAS),
                    gl::Sampling{gl::Filter::linear, gl::Filter::linear});
     coats_->upload(gl::Texels::rgbaFloat, coatTable().data());
   }
-  std::vector<float> pickDensity;
   if (settings_.nextEvent) {
-    const LightTable table = lightTable(scene, rays_.origin());
-    pickDensity = table.pickDensity;
+    LightTable table = lightTable(scene, rays_.origin());
+    pickDensity_ = std::move(table.pickDensity);
     lightCount_ = table.lights.size();
     if (lightCount_ > 0) lights_ = storageOf("path lights", table.lights, *capabilities_);
     constants_.environmentPick = static_cast<float>(table.environmentPick);
   }
-  hash_.bytes(materialValues_.data(), materialValues_.size() * sizeof(shared::PathMaterial));
   materials_ = storageOf("path materials", materialValues_, *capabilities_);
-  uploadTriangles(scene, pickDensity);
   if (features_.environment) uploadEnvironment(*scene.environment);
 }
 
@@ -225,38 +257,43 @@ void PathScene::uploadTextures(const Scene& scene) {
   values_ = makeAtlas(scene, *capabilities_, "value atlas", gl::Format::rgba8, values);
 }
 
-void PathScene::uploadTriangles(const Scene& scene, const std::vector<float>& pickDensity) {
-  std::vector<std::uint32_t> words;
-  words.reserve(scene.triangleCount() * static_cast<std::size_t>(triangleWords_) * 4);
+void PathScene::uploadTriangles(const Scene& scene) {
+  triangleValues_.assign(scene.triangleCount() * static_cast<std::size_t>(triangleWords_) * 4, 0u);
   std::vector<std::uint32_t> materialOf(scene.triangleCount(), 0);
   for (const Mesh& mesh : scene.meshes)
     std::fill_n(materialOf.begin() + mesh.firstIndex / 3, mesh.indexCount / 3,
                 static_cast<std::uint32_t>(mesh.material));
-  const auto add = [&](float value) { words.push_back(std::bit_cast<std::uint32_t>(value)); };
+  for (std::size_t t = 0; t < scene.triangleCount(); ++t) writeTriangle(scene, t, materialOf[t]);
+  hash_.bytes(triangleValues_.data(), triangleValues_.size() * sizeof(std::uint32_t));
+  triangles_ = storageOf("path triangles", triangleValues_, *capabilities_);
+  if (settings_.rays.moves) return;
+  triangleValues_ = {};
+  pickDensity_ = {};
+}
+
+void PathScene::writeTriangle(const Scene& scene, std::size_t triangle, std::uint32_t material) {
+  std::uint32_t* word = &triangleValues_[triangle * static_cast<std::size_t>(triangleWords_) * 4];
+  const auto add = [&](float value) { *word++ = std::bit_cast<std::uint32_t>(value); };
   const auto add3 = [&](const glm::vec3& v) { add(v.x), add(v.y), add(v.z); };
-  for (std::size_t t = 0; t < scene.triangleCount(); ++t) {
-    const Vertex* corners[3];
-    for (std::size_t k = 0; k < 3; ++k) corners[k] = &scene.vertices[scene.indices[3 * t + k]];
-    const auto place = [&](int k) { return glm::dvec3(corners[k]->position) - rays_.origin(); };
-    const glm::dvec3 cross = glm::cross(place(1) - place(0), place(2) - place(0));
-    const double length = glm::length(cross);
-    const glm::vec3 normal =
-        length > 0.0 ? glm::vec3(cross / length) : glm::vec3(0.0f);  // rays hit no triangle without area
-    add3(glm::vec3(place(0)));
-    words.push_back(materialOf[t]);
-    add3(glm::vec3(place(1)));
-    add(normal.x);
-    add3(glm::vec3(place(2)));
-    add(normal.y);
-    add3({normal.z, corners[2]->texCoord.x, corners[2]->texCoord.y});
-    add(pickDensity.empty() ? 0.0f : pickDensity[t]);
-    if (isTextured_)
-      for (int k = 0; k < 2; ++k) add(corners[k]->texCoord.x), add(corners[k]->texCoord.y);
-    if (features_.smoothNormals)
-      for (const Vertex* corner : corners) add3(corner->normal), words.push_back(0);
-  }
-  hash_.bytes(words.data(), words.size() * sizeof(std::uint32_t));
-  triangles_ = storageOf("path triangles", words, *capabilities_);
+  const Vertex* corners[3];
+  for (std::size_t k = 0; k < 3; ++k) corners[k] = &scene.vertices[scene.indices[3 * triangle + k]];
+  const auto place = [&](int k) { return glm::dvec3(corners[k]->position) - rays_.origin(); };
+  const glm::dvec3 cross = glm::cross(place(1) - place(0), place(2) - place(0));
+  const double length = glm::length(cross);
+  const glm::vec3 normal =
+      length > 0.0 ? glm::vec3(cross / length) : glm::vec3(0.0f);  // rays hit no triangle without area
+  add3(glm::vec3(place(0)));
+  *word++ = material;
+  add3(glm::vec3(place(1)));
+  add(normal.x);
+  add3(glm::vec3(place(2)));
+  add(normal.y);
+  add3({normal.z, corners[2]->texCoord.x, corners[2]->texCoord.y});
+  add(pickDensity_.empty() ? 0.0f : pickDensity_[triangle]);
+  if (isTextured_)
+    for (int k = 0; k < 2; ++k) add(corners[k]->texCoord.x), add(corners[k]->texCoord.y);
+  if (features_.smoothNormals)
+    for (const Vertex* corner : corners) add3(corner->normal), *word++ = 0;
 }
 
 void PathScene::bind() const {

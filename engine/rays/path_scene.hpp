@@ -17,7 +17,9 @@
 #include "shared/path_tracer.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -49,8 +51,8 @@ class PathScene {
             const Settings& settings, const std::vector<int>& rankOfMaterial = {});
 
   /// The same scene with other vertices, lights, materials and environment, but for their pictures: as a new one, whose
-  /// features and counts must be the same. RaySceneSettings::moves must be set if vertices are others.
-  void update(const Scene& scene, bool verticesMoved);
+  /// features and counts must be the same. RaySceneSettings::moves must be set. `meshes`: whose vertices are others.
+  void update(const Scene& scene, std::span<const std::size_t> meshes);
 
   /// Storage blocks 2, 3, 4; texture units 0, 1, 2, 4, 60, 61, 62, 63.
   void bind() const;
@@ -62,14 +64,15 @@ class PathScene {
   bool hasCoats() const { return hasCoats_; }
   const RayScene& rays() const { return rays_; }
   const glm::dvec3& origin() const { return rays_.origin(); }
-  const Hash& hash() const { return hash_; }  ///< over everything that affects paths
+  const Hash& hash() const { return hash_; }  ///< over everything that affects paths, as it was made
   std::size_t gpuBytes() const;
 
  private:
   void setMaterials(const Scene& scene);
   void uploadTextures(const Scene& scene);
-  void uploadRest(const Scene& scene);
-  void uploadTriangles(const Scene& scene, const std::vector<float>& pickDensity);
+  void uploadLights(const Scene& scene);
+  void uploadTriangles(const Scene& scene);
+  void writeTriangle(const Scene& scene, std::size_t triangle, std::uint32_t material);
   void uploadEnvironment(const Environment& environment);
 
   SceneFeatures features_;
@@ -81,6 +84,8 @@ class PathScene {
   bool isTextured_ = false;
   int triangleWords_ = 4;
   std::size_t lightCount_ = 0;
+  std::vector<float> pickDensity_;  ///< of each triangle, or none
+  std::vector<std::uint32_t> triangleValues_;  ///< as uploaded; only kept where the scene moves
   shared::PathConstants constants_{};
   gl::Buffer triangles_, materials_, lights_;
   bool hasCoats_ = false;

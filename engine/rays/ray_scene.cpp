@@ -18,13 +18,28 @@ RayScene::RayScene(const Scene& scene, const gl::Capabilities& capabilities, con
       sharedStack_(settings.sharedStack.value_or(!capabilities.softwareRenderer)) {
   Bvh bvh = buildBvh(scene, settings_.bvh);
   upload(scene, bvh);
-  if (settings_.moves) bvh_ = std::move(bvh);
+  if (!settings_.moves) return;
+  bvh_ = std::move(bvh);
+  refit_.emplace(*bvh_, scene);
 }
 
-void RayScene::update(const Scene& scene) {
+void RayScene::update(const Scene& scene, std::span<const std::size_t> meshes) {
   CHECK(settings_.moves, "the scene {} was not said to move", scene.name);
-  if (!refitBvh(*bvh_, scene)) bvh_ = buildBvh(scene, settings_.bvh);
-  upload(scene, *bvh_);
+  BvhRefit::Changed changed;
+  if (!refit_->refit(*bvh_, scene, meshes, changed)) {
+    bvh_ = buildBvh(scene, settings_.bvh);
+    refit_.emplace(*bvh_, scene);
+    upload(scene, *bvh_);
+    return;
+  }
+  forRuns(changed.nodes, [&](std::size_t first, std::size_t count) {
+    nodes_.upload(first * sizeof(shared::BvhNode), count * sizeof(shared::BvhNode), &bvh_->nodes[first]);
+  });
+  triangles_.upload(0, sizeof bvh_->magnitude, &bvh_->magnitude);
+  forRuns(changed.triangles, [&](std::size_t first, std::size_t count) {
+    triangles_.upload(4 * sizeof(float) + first * sizeof(shared::BvhTriangle), count * sizeof(shared::BvhTriangle),
+                      &bvh_->triangles[first]);
+  });
 }
 
 void RayScene::upload(const Scene& scene, const Bvh& bvh) {

@@ -20,6 +20,18 @@ struct RaySceneSettings {
       sharedStack;  ///< traversal stacks of compute programs in shared memory; not set: except on software renderers
 };
 
+/// Calls upload(first, count) for the runs that rising numbers make up; short gaps belong to a run.
+template <class Upload>
+void forRuns(const std::vector<std::uint32_t>& numbers, const Upload& upload) {
+  constexpr std::uint32_t kShortGap = 64;
+  for (std::size_t i = 0; i < numbers.size();) {
+    std::size_t end = i + 1;
+    while (end < numbers.size() && numbers[end] - numbers[end - 1] <= kShortGap) ++end;
+    upload(std::size_t{numbers[i]}, std::size_t{numbers[end - 1]} - numbers[i] + 1);
+    i = end;
+  }
+}
+
 class RayScene {
  public:
   using Settings = RaySceneSettings;
@@ -29,8 +41,9 @@ class RayScene {
   /// Throws Error(missingCapability) if the scene exceeds the driver's limit of buffer textures.
   RayScene(const Scene& scene, const gl::Capabilities& capabilities, const Settings& settings = {});
 
-  /// Updates moved corners of the same scene: refits if possible, else rebuilds, which may move origin().
-  void update(const Scene& scene);
+  /// Meshes of the same scene have moved, or their materials emit light now or no more: refits the hierarchy if
+  /// possible, else builds it anew, which may move origin().
+  void update(const Scene& scene, std::span<const std::size_t> meshes);
 
   void bind() const;
   /// Flag SHARED_STACK for compute programs of at most 64 invocations per group: entries of the stack, 0 if it is a
@@ -47,6 +60,7 @@ class RayScene {
   std::size_t limit_;  // bytes of a buffer texture
   bool sharedStack_;
   std::optional<Bvh> bvh_;
+  std::optional<BvhRefit> refit_;
   gl::BufferTexture nodes_, triangles_;
   glm::dvec3 origin_{0.0};
   BvhStatistics statistics_;

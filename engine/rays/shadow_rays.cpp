@@ -30,16 +30,16 @@ const PathScene& TracedScene::get() {
   if (scene_) return *scene_;
   const SceneFeatures features = analyse(*source_);
   PathScene::Settings settings{true, true, {}};
-  settings.rays.moves = source_->motion && !source_->motion->meshes.empty();
+  settings.rays.moves = source_->motion != nullptr;
   if (features.nullBoundaries) scene_.emplace(surfacesOf(*source_), features, *capabilities_, settings);
   else scene_.emplace(*source_, features, *capabilities_, settings);
   return *scene_;
 }
 
-void TracedScene::update(bool verticesMoved) {
+void TracedScene::update(std::span<const std::size_t> meshes) {
   if (!scene_) return;
-  if (analyse(*source_).nullBoundaries) scene_->update(surfacesOf(*source_), verticesMoved);
-  else scene_->update(*source_, verticesMoved);
+  if (analyse(*source_).nullBoundaries) scene_->update(surfacesOf(*source_), meshes);
+  else scene_->update(*source_, meshes);
 }
 
 ShadowRays::ShadowRays(gl::ProgramLibrary& programs, const PathScene& scene, const glm::dvec3& origin,

@@ -9,7 +9,9 @@
 
 #include <glm/glm.hpp>
 
+#include <cstddef>
 #include <optional>
+#include <span>
 
 namespace lucerna {
 
@@ -21,7 +23,7 @@ class TracedScene {
       : source_(&scene), capabilities_(&capabilities) {}
   const PathScene& get();
   /// The scene has changed; its features are the same.
-  void update(bool verticesMoved);
+  void update(std::span<const std::size_t> meshes);  ///< whose vertices are others
   std::size_t gpuBytes() const { return scene_ ? scene_->gpuBytes() : 0; }
 
  private:

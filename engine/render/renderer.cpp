@@ -18,6 +18,7 @@
 #include <iterator>
 #include <set>
 #include <span>
+#include <utility>
 
 namespace lucerna {
 
@@ -107,8 +108,21 @@ void Renderer::makeLights(const gl::Context& context, gl::ProgramLibrary& progra
   const TechniqueEntry& technique = techniqueNamed(settings_.technique);
   const Scene& drawn = gpuScene_->scene();
   if (scene.sun) sunFrustum_ = fitSunFrustum(drawn, scene.sun->direction);
-  spots_ = spotViews(drawn);
-  points_ = pointViews(drawn);
+  if (!localLights_) chooseLamps(programs);
+  if (showsDirect()) makeShadowMaps(programs);
+  if (!technique_ && technique.drawsSurfaces && technique.isNeeded(settings_, features_))
+    technique_ = technique.make(parts(context, programs, scene));
+  if (EnvironmentView::isNeeded(features_) && settings_.component != Component::indirect)
+    environmentView_.emplace(programs, scene);
+  loadPrograms(programs);
+}
+
+// Which lamps have shadow maps.
+void Renderer::chooseLamps(gl::ProgramLibrary& programs) {
+  const TechniqueEntry& technique = techniqueNamed(settings_.technique);
+  spots_ = spotViews(gpuScene_->scene());
+  points_ = pointViews(gpuScene_->scene());
+  plainLamps_.clear();
   const bool reflectsLamps = technique.readsLightMaps && technique.readsLightMaps(settings_, features_);
   const bool byRays = settings_.shadows == ShadowTransport::rays;
   const bool isCrowded = byRays && spots_.size() + points_.size() >= std::size_t{ShadowRays::kMostLights};
@@ -118,12 +132,6 @@ void Renderer::makeLights(const gl::Context& context, gl::ProgramLibrary& progra
     for (std::vector<LightViews>* lamps : {&spots_, &points_})
       std::ranges::move(keepMostImportant(programs, *gpuScene_, *lamps, most), std::back_inserter(plainLamps_));
   }
-  if (showsDirect()) makeShadowMaps(programs);
-  if (technique.drawsSurfaces && technique.isNeeded(settings_, features_))
-    technique_ = technique.make(parts(context, programs, scene));
-  if (EnvironmentView::isNeeded(features_) && settings_.component != Component::indirect)
-    environmentView_.emplace(programs, scene);
-  loadPrograms(programs);
 }
 
 bool Renderer::follow(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
@@ -133,9 +141,9 @@ bool Renderer::follow(const gl::Context& context, gl::ProgramLibrary& programs, 
   exposure_ = settings_.exposure.value_or(sceneExposure_);
   if (geometry_ || !(analyse(scene) == features_) || floatingOrigin(scene.bounds) != origin_) return false;
   view_.reset();
-  antialiasing_.forget();
   const bool movesCamerasAlone = change.meshes.empty() && !change.anyLight() && !change.materials && !change.media;
   if (movesCamerasAlone) return true;
+  sceneMoves_ = true;
   if (picture_) {
     technique_ = techniqueNamed(settings_.technique).make(parts(context, programs, scene));
     picture_ = dynamic_cast<PictureTechnique*>(technique_.get());
@@ -147,13 +155,11 @@ bool Renderer::follow(const gl::Context& context, gl::ProgramLibrary& programs, 
     *moved_ = std::move(next);
   }
   gpuScene_->update(change.meshes);
-  traced_.update(!change.meshes.empty());
-  technique_.reset();
-  plainLamps_.clear();
+  traced_.update(change.meshes);
+  if (technique_ && !technique_->follow(change)) technique_.reset();
   shadowRays_.reset();
-  localLights_.reset();
-  sunShadow_.reset();
-  shadowsMade_ = false;
+  if (!change.meshes.empty() || change.lamps) localLights_.reset();
+  if (!change.meshes.empty() || change.sun) sunShadow_.reset();
   environmentView_.reset();
   makeLights(context, programs, scene);
   return true;
@@ -201,7 +207,7 @@ void Renderer::makeShadowMaps(gl::ProgramLibrary& programs) {
     std::vector<LightViews> lamps = spots_;
     lamps.insert(lamps.end(), points_.begin(), points_.end());
     lamps.insert(lamps.end(), plainLamps_.begin(), plainLamps_.end());
-    if (!lamps.empty())
+    if (!lamps.empty() && !localLights_)
       localLights_.emplace(programs, *gpuScene_, settings_.lights, std::vector<LightViews>{}, std::vector<LightViews>{},
                            lamps);
     ShadowRays::Lights lights{{}, rayShadowedLamps()};
@@ -210,15 +216,18 @@ void Renderer::makeShadowMaps(gl::ProgramLibrary& programs) {
     shadowRays_->resize(settings_.size);
     return;
   }
-  if (SunShadow::isNeeded(features_)) {
+  if (SunShadow::isNeeded(features_) && !sunShadow_) {
     SunShadow::Settings shadow = settings_.shadow;
     if (shadow.cascades.cascades == SunCascadeSettings::kAuto)
       shadow.cascades.cascades =
           neededCascades(gpuScene_->scene(), std::max(sunFrustum_.width, sunFrustum_.height) / shadow.size);
     sunShadow_.emplace(programs, *gpuScene_, shadow);
+    sunShadowMade_ = false;
   }
-  if (LocalLights::isNeeded(features_))
+  if (LocalLights::isNeeded(features_) && !localLights_) {
+    lampShadowsMade_ = false;
     localLights_.emplace(programs, *gpuScene_, settings_.lights, spots_, points_, plainLamps_);
+  }
 }
 
 SurfacePrograms Renderer::surfacePrograms(gl::ProgramLibrary& programs, bool inspected) const {
@@ -290,7 +299,7 @@ void Renderer::apply(const RenderSettings& settings) {
 }
 
 void Renderer::forget() {
-  shadowsMade_ = false;
+  sunShadowMade_ = lampShadowsMade_ = false;
   view_.reset();
   antialiasing_.forget();
   if (technique_) technique_->forget();
@@ -302,21 +311,21 @@ int Renderer::rayShadowedLamps() const {
 }
 
 void Renderer::recordShadows(const Camera& camera, bool viewIsNew) {
-  const bool areMade = settings_.reuse && shadowsMade_;
-  if (sunShadow_ && ((viewIsNew && sunShadow_->followsCamera()) || !areMade)) {
+  const bool sunIsMade = settings_.reuse && sunShadowMade_, lampsAreMade = settings_.reuse && lampShadowsMade_;
+  if (sunShadow_ && ((viewIsNew && sunShadow_->followsCamera()) || !sunIsMade)) {
     const gl::TimeQuery::Scope stage(timer_, "shadow");
     const double aspect = static_cast<double>(settings_.size.x) / settings_.size.y;
     sunShadow_->record(*gpuScene_, sunFrustum_, camera, aspect, nearPlane(gpuScene_->scene().bounds));
   }
-  if (localLights_ && localLights_->hasSpots() && !areMade) {
+  if (localLights_ && localLights_->hasSpots() && !lampsAreMade) {
     const gl::TimeQuery::Scope stage(timer_, "spot shadows");
     localLights_->recordSpots(*gpuScene_);
   }
-  if (localLights_ && localLights_->hasPoints() && !areMade) {
+  if (localLights_ && localLights_->hasPoints() && !lampsAreMade) {
     const gl::TimeQuery::Scope stage(timer_, "point shadows");
     localLights_->recordPoints(*gpuScene_);
   }
-  shadowsMade_ = true;
+  sunShadowMade_ = lampShadowsMade_ = true;
 }
 
 FrameView Renderer::viewOf(const Camera& cameraInScene, const Camera& volumeCameraInScene,
@@ -459,6 +468,7 @@ void Renderer::render(const Camera& camera, const Camera& volumeCamera) {
 // Frames with all their light are added up in order; until then, and while the view moves, the running mean is shown.
 void Renderer::showAccumulated(int sample, bool moves) {
   const gl::TimeQuery::Scope stage(timer_, "antialiasing");
+  const bool sceneMoves = std::exchange(sceneMoves_, false);
   const bool hasAllLight = !technique_ || technique_->isSettled();
   if (!hasAllLight) antialiasing_.clear();
   else if (sample == antialiasing_.count()) antialiasing_.add(radiance_, noAttributes_);
@@ -469,9 +479,9 @@ void Renderer::showAccumulated(int sample, bool moves) {
     return;
   }
   const FrameView centred = viewOf(view_->camera, view_->volumeCamera);
-  antialiasing_.accumulate(
-      {radiance_, depth_, centred.clip, centred.camera.position, samples_[static_cast<std::size_t>(sample)], exposure_},
-      moves, settings_.reprojection, settings_.pixelSamples, noAttributes_);
+  antialiasing_.accumulate({radiance_, depth_, centred.clip, centred.camera.position,
+                            samples_[static_cast<std::size_t>(sample)], exposure_, sceneMoves},
+                           moves, settings_.reprojection, settings_.pixelSamples, noAttributes_);
   shown_ = &antialiasing_.shown();
 }
 

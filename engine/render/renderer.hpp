@@ -103,6 +103,7 @@ class Renderer {
   const Scene& aboutOrigin(const Scene& scene);  ///< makes moved_ if it must be moved
   FrameParts parts(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene);
   void makeLights(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene);
+  void chooseLamps(gl::ProgramLibrary& programs);
   void makeShadowMaps(gl::ProgramLibrary& programs);
   void loadPrograms(gl::ProgramLibrary& programs);
   void allocateTargets();
@@ -157,7 +158,7 @@ class Renderer {
   std::optional<SunShadow> sunShadow_;
   std::optional<LocalLights> localLights_;
   std::optional<ShadowRays> shadowRays_;  ///< instead of maps
-  bool shadowsMade_ = false;
+  bool sunShadowMade_ = false, lampShadowsMade_ = false;
 
   std::optional<EnvironmentView> environmentView_;
   gl::PictureChunks surfaceChunks_;
@@ -171,6 +172,7 @@ class Renderer {
   std::optional<View> view_;
   std::vector<glm::dvec2> samples_;  ///< offsets from pixels' centres
   int nextSample_ = 0;  ///< while light or the view changes
+  bool sceneMoves_ = false;  ///< since the last frame
   Antialiasing antialiasing_;
 };
 

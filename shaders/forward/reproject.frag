@@ -12,12 +12,11 @@ uniform mat4 beforeFromClip, beforeFromFar;  // from the frame's clip space; far
 uniform vec4 inverseDistance;                // times a place in clip space: 1 over its distance along the view
 uniform vec2 offset;                         // of the frame's samples from pixels' centres, in pixels
 uniform int moves, starts;                   // the view differs from the frame before; there is none before
-uniform float most, exposure;
+uniform float most, mostInMotion, exposure;
 layout(location = 0) out vec4 mean;
 layout(location = 1) out float nearestDistance;  // of 3x3 pixels
 
 const float kDeviations = 1.25;
-const float kMostInMotion = 10.0;
 const float kInfinite = 1e30;
 const float kFarther = 1.02;  // beyond this ratio of distances it is another surface
 
@@ -93,6 +92,6 @@ void main() {
   vec3 old = cubic(uv), away = old - middle;
   vec3 ratios = abs(away) / max(range, vec3(1e-6));
   old = middle + away / max(1.0, max(ratios.r, max(ratios.g, ratios.b)));
-  float count = min(texelFetch(beforeTexture, pixelBefore, 0).a + 1.0, kMostInMotion);
+  float count = min(texelFetch(beforeTexture, pixelBefore, 0).a + 1.0, mostInMotion);
   mean = vec4(expanded(mix(old, compressed(radiance), 1.0 / count)), count);
 }

@@ -18,6 +18,7 @@ SHARED_BEGIN
 #define CACHE_PREFETCH_BUFFER 2
 #define CACHE_WORK_BEFORE_BUFFER 3
 #define CACHE_WORK_BUFFER 5
+#define CACHE_MOVED_BUFFER 4
 #define CACHE_LINKS_BUFFER 6
 #define CACHE_BOUNCED_BUFFER 7
 
@@ -68,6 +69,14 @@ struct PrefetchPoint {
   uint isThere;         // 0: the ray met nothing
   vec3 normal;          // for shading, unit, on the visible side
   uint padding;
+};
+
+// Where surfaces are, or were before they moved: among the frame's positions.
+struct MovedBox {
+  vec3 least;
+  float padding0;
+  vec3 most;
+  float padding1;
 };
 
 struct CacheConstants {

@@ -114,5 +114,39 @@ TEST_F(MotionGl, ALampLightsFromWhereItIsThen) {
   }
 }
 
+// Frame by frame, as in the window: records stay in their places, and what they show is not that of the time before.
+TEST_F(MotionGl, LiveFramesShowTheLightOfTheirTime) {
+  const test::TempFolder folder;
+  folder.write("m.obj",
+               "mtllib m.mtl\nusemtl white\no floor\nv -2 0 -2\nv 2 0 -2\nv 2 0 2\nv -2 0 2\nvn 0 1 0\n"
+               "f 4//1 3//1 2//1 1//1\no card\nv -1.9 0.02 -1\nv -0.4 0.02 -1\nv -0.4 0.02 1\nv -1.9 0.02 1\n"
+               "f 8//1 7//1 6//1 5//1\nusemtl lamp\no lamp\nv -2 3 -2\nv 2 3 -2\nv 2 3 2\nv -2 3 2\nvn 0 -1 0\n"
+               "f 9//2 10//2 11//2 12//2\n");
+  folder.write("m.mtl", "newmtl white\nKd 0.5 0.5 0.5\nnewmtl lamp\nKd 0 0 0\nKe 1 1 1\n");
+  const auto file = folder.write("s.json", R"({"model": "m.obj", "environment": null, "sun": null,
+      "camera": {"position": [0, 2.9, 0], "direction": [0, -1, 0], "up": [0, 0, -1], "fov": 60},
+      "materials": {"lamp": {"emission": {"times": [0, 1], "values": [[1, 1, 1], [9, 3, 1]]}}},
+      "objects": {"card": {"translation": {"times": [0, 1], "values": [[0, 0, 0], [2.3, 0, 0]]}}}})");
+  const RenderSettings settings = settingsOf("irradiance-cache");
+  Scene scene = loadScene(file);
+  Renderer live(context(), programs(), scene, settings);
+  live.renderToTheEnd(scene.cameras.front());
+  Image before = live.readRadiance();
+  for (const double t : {0.25, 0.5, 0.75, 1.0}) {
+    ASSERT_TRUE(live.follow(context(), programs(), scene, poseAt(scene, t)));
+    live.render(scene.cameras.front());
+    const Image found = live.readRadiance(), right = anew(loadScene(file, t), settings);
+    double error = 0.0, change = 0.0, whole = 0.0;
+    for (std::size_t i = 0; i < right.pixels.size(); ++i) {
+      error += glm::distance(found.pixels[i], right.pixels[i]);
+      change += glm::distance(before.pixels[i], right.pixels[i]);
+      whole += glm::length(right.pixels[i]);
+    }
+    EXPECT_LT(error, 0.04 * whole) << t;
+    EXPECT_GT(change, 0.2 * whole) << t;
+    before = right;
+  }
+}
+
 }  // namespace
 }  // namespace lucerna

@@ -10,7 +10,9 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <numeric>
 #include <random>
+#include <vector>
 
 namespace lucerna {
 namespace {
@@ -447,7 +449,9 @@ TEST_F(RayCasterOnGl, FollowsWhatMoves) {
   settings.moves = true;
   RayScene moved(scene, capabilities(), settings);
   const auto check = [&] {
-    moved.update(scene);
+    std::vector<std::size_t> meshes(scene.meshes.size());
+    std::iota(meshes.begin(), meshes.end(), std::size_t{0});
+    moved.update(scene, meshes);
     const RayScene built(scene, capabilities());
     EXPECT_EQ(moved.origin(), built.origin());
     const std::vector<GlRay> rays = randomRays(8192, -built.origin(), glm::dvec3(1.5), 9);

@@ -4,9 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <map>
 #include <random>
 #include <set>
 
@@ -193,18 +196,89 @@ TEST(BvhBuild, KeepsThePlaneOfASliverAndWhatEmits) {
   }
 }
 
-TEST(BvhBuild, RefitsWhereTheTrianglesAreTheSame) {
+/// In ten meshes in a row.
+Scene soupInMeshes() {
   Scene scene = soup(2000, 0.1, 4);
-  Bvh bvh = buildBvh(scene, {.splitBudget = 0.0});
-  for (Vertex& v : scene.vertices) v.position *= glm::vec3(1.5f, 0.5f, 1.0f);
-  ASSERT_TRUE(refitBvh(bvh, scene));
-  const Decoded d = decode(bvh);
-  EXPECT_EQ(d.outside, 0);
-  EXPECT_EQ(d.triangles.size(), 2000u);
-  scene.vertices[scene.indices[0]].position.x = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_FALSE(refitBvh(bvh, scene));
-  scene = soup(2001, 0.1, 4);
-  EXPECT_FALSE(refitBvh(bvh, scene));
+  const auto count = static_cast<std::uint32_t>(scene.indices.size() / 10);
+  scene.meshes.resize(10, scene.meshes.front());
+  for (std::uint32_t m = 0; m < 10; ++m) {
+    scene.meshes[m].firstIndex = m * count, scene.meshes[m].indexCount = count;
+    for (std::uint32_t i = m * count; i < (m + 1) * count; ++i)
+      scene.vertices[scene.indices[i]].position.x += 2.0f * static_cast<float>(m);
+  }
+  return scene;
+}
+
+void moveMesh(Scene& scene, std::size_t mesh, const glm::vec3& way) {
+  const Mesh& m = scene.meshes[mesh];
+  std::set<std::uint32_t> corners(scene.indices.begin() + m.firstIndex,
+                                  scene.indices.begin() + m.firstIndex + m.indexCount);
+  for (const std::uint32_t v : corners) scene.vertices[v].position += way;
+}
+
+TEST(BvhBuild, FollowsMeshesThatMove) {
+  Scene scene = soupInMeshes();
+  for (const double budget : {0.0, 0.3}) {
+    Bvh bvh = buildBvh(scene, {.splitBudget = budget});
+    BvhRefit refit(bvh, scene);
+    for (const std::size_t mesh : {3u, 7u, 3u}) {
+      moveMesh(scene, mesh, glm::vec3(0.1f, -0.05f, 0.02f));
+      const std::vector<shared::BvhNode> before = bvh.nodes;
+      BvhRefit::Changed changed;
+      ASSERT_TRUE(refit.refit(bvh, scene, std::array{mesh}, changed));
+      const Decoded d = decode(bvh);
+      if (budget == 0.0) {
+        EXPECT_EQ(d.outside, 0);
+        EXPECT_EQ(d.triangles.size(), 2000u);
+        EXPECT_EQ(changed.triangles.size(), 200u);
+      }
+      EXPECT_LT(changed.nodes.size(), bvh.nodes.size() / 4);
+      // Each triangle is as a hierarchy made anew has it, and what is not named is as it was.
+      const Bvh anew = buildBvh(scene);
+      EXPECT_EQ(bvh.magnitude, anew.magnitude);
+      std::map<std::uint32_t, shared::BvhTriangle> right;
+      for (const shared::BvhTriangle& t : anew.triangles) right[t.id & BVH_TRIANGLE_ID_MASK] = t;
+      for (const shared::BvhTriangle& t : bvh.triangles)
+        EXPECT_EQ(std::memcmp(&t, &right.at(t.id & BVH_TRIANGLE_ID_MASK), sizeof t), 0);
+      for (std::size_t n = 0; n < before.size(); ++n)
+        EXPECT_TRUE(std::ranges::binary_search(changed.nodes, n) ||
+                    std::memcmp(&before[n], &bvh.nodes[n], sizeof before[n]) == 0);
+    }
+  }
+}
+
+TEST(BvhBuild, KnowsWhatEmitsNow) {
+  Scene scene = soupInMeshes();
+  scene.materials.push_back(scene.materials.front());
+  scene.meshes[2].material = 1;
+  Bvh bvh = buildBvh(scene);
+  BvhRefit refit(bvh, scene);
+  for (const float emission : {3.0f, 0.0f}) {
+    scene.materials[1].emission = glm::vec3(emission);
+    BvhRefit::Changed changed;
+    ASSERT_TRUE(refit.refit(bvh, scene, std::array<std::size_t, 1>{2}, changed));
+    for (const shared::BvhTriangle& t : bvh.triangles)
+      EXPECT_EQ((t.id & BVH_TRIANGLE_EMISSIVE) != 0, emission > 0.0f && (t.id & BVH_TRIANGLE_ID_MASK) / 200 == 2);
+  }
+}
+
+TEST(BvhBuild, IsBuiltAnewWhereItWouldBeBad) {
+  const Scene rest = soupInMeshes();
+  Bvh bvh = buildBvh(rest);
+  const std::array<std::size_t, 1> first{0};
+  const auto follows = [&](const Scene& scene) {
+    Bvh copy = bvh;
+    BvhRefit::Changed changed;
+    return BvhRefit(bvh, rest).refit(copy, scene, first, changed);
+  };
+  EXPECT_TRUE(follows(rest));
+  Scene far = rest;
+  moveMesh(far, 0, glm::vec3(100.0f, 0.0f, 0.0f));
+  EXPECT_FALSE(follows(far));
+  Scene broken = rest;
+  broken.vertices[broken.indices[0]].position.x = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_FALSE(follows(broken));
+  EXPECT_FALSE(follows(soup(2001, 0.1, 4)));
 }
 
 }  // namespace
