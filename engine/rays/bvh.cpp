@@ -18,6 +18,20 @@
 
 namespace lucerna {
 
+namespace detail {
+struct BvhBox {
+  glm::vec3 min{std::numeric_limits<float>::infinity()}, max{-std::numeric_limits<float>::infinity()};
+  void add(const glm::vec3& p) { min = glm::min(min, p), max = glm::max(max, p); }
+  void add(const BvhBox& b) { min = glm::min(min, b.min), max = glm::max(max, b.max); }
+  bool empty() const { return !(min.x <= max.x && min.y <= max.y && min.z <= max.z); }
+  double halfArea() const {
+    const glm::dvec3 e = glm::dvec3(max) - glm::dvec3(min);
+    return empty() ? 0.0 : e.x * e.y + e.y * e.z + e.z * e.x;
+  }
+  glm::vec3 centre() const { return 0.5f * min + 0.5f * max; }
+};
+}  // namespace detail
+
 namespace {
 
 using shared::BvhNode;
@@ -34,17 +48,7 @@ float nextAbove(float v) {
 constexpr int kBins = 16;
 constexpr std::size_t kParallelFrom = 4096;  // fewer references are not worth another thread
 
-struct Box {
-  glm::vec3 min{kInfinity}, max{-kInfinity};
-  void add(const glm::vec3& p) { min = glm::min(min, p), max = glm::max(max, p); }
-  void add(const Box& b) { min = glm::min(min, b.min), max = glm::max(max, b.max); }
-  bool empty() const { return !(min.x <= max.x && min.y <= max.y && min.z <= max.z); }
-  double halfArea() const {
-    const glm::dvec3 e = glm::dvec3(max) - glm::dvec3(min);
-    return empty() ? 0.0 : e.x * e.y + e.y * e.z + e.z * e.x;
-  }
-  glm::vec3 centre() const { return 0.5f * min + 0.5f * max; }
-};
+using Box = detail::BvhBox;
 
 Box intersection(const Box& a, const Box& b) { return {glm::max(a.min, b.min), glm::min(a.max, b.max)}; }
 
