@@ -48,6 +48,7 @@ struct DynamicOptions {
   unsigned samples = 256;
   double fps = 8.0, time = 0.0;
   bool live = false;
+  bool followsKeys = false;  ///< whether `keys` has a path of the camera
 };
 
 struct Moment {
@@ -98,7 +99,7 @@ class Moments {
         size_(settings.size),
         filter_(settings.filter),
         cache_(options.references.empty() ? measure::ReferenceCache::defaultFolder() : fs::path(options.references)) {
-    if (!options.keys.empty()) path_.emplace(keyFramesOf(scene, options.keys));
+    if (options.followsKeys) path_.emplace(keyFramesOf(scene, scene.keyFrames));
     const int last = options.frames - 1;
     const std::string ends = referenceKey(posed(0), 0).name() + " to " + referenceKey(posed(last), last).name();
     part_.emplace(options.part, "bench dynamic",
@@ -353,7 +354,13 @@ int runDynamic(DynamicOptions options) {
     ask(point.label(), picture);
   }
   Scene scene = loadScene(options.scene);
-  if (!scene.motion && options.keys.empty())
+  if (!options.keys.empty()) {
+    scene.keyFrames.clear();
+    setKeyFrames(scene, options.keys, false);
+    finishMotion(scene);
+    options.followsKeys = !scene.keyFrames.empty();
+  }
+  if (!scene.motion && !options.followsKeys)
     throwBadInput("{}: nothing moves: it has no curves and no animations, and no camera path is given (--keys)",
                   options.scene);
 
@@ -440,7 +447,8 @@ Work addBenchDynamic(Command app) {
       .showDefault();
   app.addFlag("--live", options->live, "one frame a moment, as in the window, not each picture to its end");
   app.addOption("--camera", options->camera, "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");
-  app.addOption("--keys", options->keys, "the camera goes along these key frames, from the first to the last");
+  app.addOption("--keys", options->keys,
+                "key frames of what is carried, and of the camera, which goes from the first to the last");
   app.addOption("--references", options->references, "folder of the references (LUCERNA_REFERENCES)");
   app.addOption("--out", options->out, "folder for dynamic.html, dynamic.json and the pictures").showDefault();
   options->part.declare(app, "moments");

@@ -28,7 +28,7 @@ Finding measureFrames(const Asked& asked, glm::ivec2 size, const UnitInput& inpu
   RenderSettings settings = asked.parse(size);
   settings.reuse = false;
   settings.fullFloatTarget = false;  // as a walk has it
-  const Spline path = pathOf(scene, {});
+  const Spline path = pathOf(scene);
   at("allocating");
   Renderer renderer(session.context, session.programs, scene, settings);
   std::vector<double> ms;

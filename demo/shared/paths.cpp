@@ -26,9 +26,8 @@ std::vector<KeyFrame> orbit(const Scene& scene) {
 
 }  // namespace
 
-Spline pathOf(const Scene& scene, const std::filesystem::path& keys) {
-  const std::filesystem::path file = keys.empty() ? scene.keyFrames : keys;
-  return Spline(file.empty() ? orbit(scene) : keyFramesOf(scene, file));
+Spline pathOf(const Scene& scene) {
+  return Spline(scene.keyFrames.empty() ? orbit(scene) : keyFramesOf(scene, scene.keyFrames));
 }
 
 }  // namespace lucerna::demo

@@ -3,11 +3,9 @@
 
 #include "scene/key_frames.hpp"
 
-#include <filesystem>
-
 namespace lucerna::demo {
 
-/// From `keys`, else from the file named by the scene, else once around the scene.
-Spline pathOf(const Scene& scene, const std::filesystem::path& keys);
+/// From the scene's key frames, else once around the scene.
+Spline pathOf(const Scene& scene);
 
 }  // namespace lucerna::demo

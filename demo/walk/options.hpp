@@ -17,7 +17,8 @@ struct WalkOptions {
   /// Whether to render off-screen into files instead of a window.
   bool records() const { return !record.empty() || part.isPart() || !part.checkpoint.empty(); }
   int capture = -1;  ///< the frame that RenderDoc captures; negative: none
-  double fps = 25.0, time = 0.0;  ///< of a scene that moves: frames a second of --record, and the first frame's time
+  // Of a scene that moves, with --record: frames a second of its time (0: they span it), and the first frame's time.
+  double fps = 0.0, time = 0.0;
   int frames = 0;  ///< 0: 12 when recording, the whole path in a window
 };
 

@@ -22,6 +22,7 @@
 #include "walk/options.hpp"
 #include "shared/paths.hpp"
 #include "scene/motion.hpp"
+#include "scene/scene_file.hpp"
 #include "walk/window.hpp"
 
 #include <fmt/core.h>
@@ -71,12 +72,19 @@ nlohmann::ordered_json resultJson(const WalkOptions& options, const Host& host, 
 
 /// Whether a scene that moves is seen from its first camera, as no path is named.
 bool standsStill(const WalkOptions& options, const Scene& scene) {
-  return scene.motion && scene.keyFrames.empty() && options.keys.empty() && options.views.empty();
+  return scene.motion && scene.keyFrames.empty() && options.views.empty();
+}
+
+/// Seconds of the scene's time from one recorded frame to the next.
+double stepOf(const WalkOptions& options, const Scene& scene, int frames) {
+  if (!scene.motion) return 0.0;
+  if (options.fps > 0.0) return 1.0 / options.fps;
+  return std::max(scene.motion->end - options.time, 0.0) / std::max(frames - 1, 1);
 }
 
 /// The frames of a walk as units of work. Scene, settings and cameras determine a frame, so they identify the folder.
 PartFolder framesOf(const WalkOptions& options, const Scene& scene, const Renderer& renderer,
-                    const std::vector<Camera>& cameras) {
+                    const std::vector<Camera>& cameras, double step) {
   if (options.part.checkpoint.empty()) return PartFolder(options.part, "walk", "", cameras.size());
   if (options.flicker)
     throwBadInput(
@@ -92,7 +100,7 @@ PartFolder framesOf(const WalkOptions& options, const Scene& scene, const Render
   return PartFolder(
       options.part, "walk",
       fmt::format("{}{}, scene {}, views {:016x}, {}", scene.name,
-                  scene.motion ? fmt::format(", {} s, {} a second", options.time, options.fps) : "",
+                  scene.motion ? fmt::format(", from {} s, a frame each {} s", options.time, step) : "",
                   measure::keyOf(scene, cameras.front(), renderer.size(), Transport::all, settings).name(),
                   views.value(), settings),
       cameras.size());
@@ -117,7 +125,8 @@ int record(const WalkOptions& options, const Host& host, const gl::Context& cont
     cameras.push_back(path.view(views.back()));
   }
   const RenderSettings settings = renderer->settings();
-  const PartFolder part = framesOf(options, scene, *renderer, cameras);
+  const double step = stepOf(options, scene, frames);
+  const PartFolder part = framesOf(options, scene, *renderer, cameras, step);
 
   watchForInterrupt();
   renderer->renderSamples(path.view(first),
@@ -138,7 +147,7 @@ int record(const WalkOptions& options, const Host& host, const gl::Context& cont
     } else {
       const auto start = Clock::now();
       if (scene.motion) {
-        const SceneChange change = poseAt(scene, options.time + static_cast<double>(i) / options.fps);
+        const SceneChange change = poseAt(scene, options.time + static_cast<double>(i) * step);
         if (!renderer->follow(context, programs, scene, change))
           renderer = std::make_unique<Renderer>(context, programs, scene, settings);
       }
@@ -211,6 +220,7 @@ int play(const WalkOptions& options, Host& host, const gl::Context& context, gl:
   state.shotFolder = options.shots;
   const bool measures = !options.common.json.empty() && options.playInput.empty();
   state.panel = options.panel == "on" || (options.panel == "auto" && !measures);
+  state.path.loops = state.scene->motion && state.panel;  // as its time does
   state.hint = !measures;
   state.messageAge = measures ? 1e9 : 0.0;
   // Run until it is closed, then report.
@@ -239,11 +249,15 @@ int runWalk(WalkOptions options) {
   options.picture.readSettingsFile();
   if (options.records()) options.picture.usualSamples = 1;  // frames are timed
   const RenderSettings settings = options.picture.parse();
-  if (options.scene.empty()) options.scene = (dataFolder() / "assets/atrium/atrium.json").string();
+  if (options.scene.empty()) options.scene = (dataFolder() / "assets/atrium/day.json").string();
   if (!options.record.empty() && fs::exists(options.record) && !fs::is_directory(options.record))
     throwBadInput("--record {}: is a file, expected a folder", options.record);
   Scene scene = loadScene(options.scene);
-  Spline path = pathOf(scene, options.keys);
+  if (!options.keys.empty()) {
+    setKeyFrames(scene, options.keys, false);
+    finishMotion(scene);
+  }
+  Spline path = pathOf(scene);
   parseViews(options.views, path.viewCount());
 
   HostOptions hostOptions;
@@ -264,17 +278,18 @@ int runWalk(WalkOptions options) {
 
 Work addWalk(Command app) {
   auto options = std::make_shared<WalkOptions>();
-  app.addOption("SCENE", options->scene, "a scene file (default: the atrium)");
-  app.addOption("--keys", options->keys,
-                "key frames of the camera path (default: the scene's, else one round around it)");
+  app.addOption("SCENE", options->scene, "a scene file (default: a day in the atrium)");
+  app.addOption(
+      "--keys", options->keys,
+      "key frames of the camera path and of what is carried (default: the scene's, else one round around it)");
   app.addOption("--record", options->record,
                 "draw off-screen and write pictures into this folder (without a window: walk)");
   options->part.declare(app, "frames of --record");
   app.addOption("--frames", options->frames, "number of pictures (12), or frames in a window (the whole path)")
       .range(1, 1000000);
-  app.addOption("--fps", options->fps, "with --record, of scenes that move: pictures a second of the scene's time")
-      .range(1e-6, 1e6)
-      .showDefault();
+  app.addOption("--fps", options->fps,
+                "with --record, of scenes that move: pictures a second of the scene's time (default: they span it)")
+      .range(1e-6, 1e6);
   app.addOption("--time", options->time, "with --record, of scenes that move: seconds at the first picture")
       .range(-1e12, 1e12)
       .showDefault();

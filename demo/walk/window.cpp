@@ -258,7 +258,7 @@ void WalkWindow::loadWantedScene() {
     breathe("loading " + file.filename().string());
     auto scene = std::make_unique<Scene>(loadScene(file));
     if (state_.ground && wantsGround(*scene)) addGround(*scene);
-    Spline path = pathOf(*scene, {});
+    Spline path = pathOf(*scene);
     RenderSettings settings = state_.sides[0].options.parse();
     settings.size = state_.sides[0].renderer->size();
     const gl::BuildWatch watch([this](const std::string& name) { breathe("compiling " + name); });

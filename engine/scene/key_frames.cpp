@@ -1,4 +1,4 @@
-// Key frames and the natural cubic spline through them.
+// Key frames of the camera and the natural cubic spline through them; key frames of what is carried.
 //
 // Spline: on segment i, with u = t - i in [0,1], the cubic Hermite polynomial of the values P_i, P_(i+1) and the
 // tangents D_i, D_(i+1). The tangents make the second derivative continuous at inner keys and 0 at both ends, which
@@ -16,6 +16,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <string_view>
+#include <system_error>
+#include <utility>
 
 namespace lucerna {
 
@@ -40,6 +43,21 @@ class LineReader {
     const std::string_view result = rest_.substr(begin, end - begin);
     rest_.remove_prefix(end);
     return result;
+  }
+
+  /// A word, or in double quotes several.
+  std::string name(std::string_view after) {
+    std::string_view text = word();
+    if (text.starts_with('"')) {
+      const char* begin = text.data() + 1;
+      const std::string_view whole(begin, static_cast<std::size_t>(rest_.data() + rest_.size() - begin));
+      const std::size_t end = whole.find('"');
+      if (end == std::string_view::npos) fail("a name without its closing quote");
+      text = whole.substr(0, end);
+      rest_ = whole.substr(end + 1);
+    }
+    if (text.empty()) fail(fmt::format("no name after '{}'", after));
+    return std::string(text);
   }
 
   double number(std::string_view after) {
@@ -87,8 +105,11 @@ KeyFrame readKey(LineReader line) {
         line.fail(fmt::format("field of view {}, expected degrees between 0 and 180", degrees));
       key.verticalFov = degrees * kDegree;
     } else {
-      line.fail(fmt::format(
-          "unknown word '{}'; a key is: p X Y Z  d X Y Z  u X Y Z  [r X Y Z]  [f DEGREES]  [a ASPECT]", word));
+      line.fail(
+          fmt::format("unknown word '{}'; a key is: p X Y Z  d X Y Z  u X Y Z  [r X Y Z]  [f DEGREES]  [a ASPECT], or: "
+                      "move NAME  t "
+                      "SECONDS  p X Y Z",
+                      word));
     }
   }
   if (!position) line.fail("no position: expected p X Y Z");
@@ -103,6 +124,26 @@ KeyFrame readKey(LineReader line) {
     line.fail("the up vector u is parallel to the viewing direction d");
   key.up = glm::normalize(unitUp - glm::dot(unitUp, key.direction) * key.direction);
   return key;
+}
+
+/// One key after the word `move`, added to those of its name.
+void readMove(LineReader line, int number, std::vector<KeyFrameMove>& moves) {
+  const std::string name = line.name("move");
+  std::optional<double> time;
+  std::optional<glm::dvec3> place;
+  for (std::string_view word = line.word(); !word.empty(); word = line.word()) {
+    if (word == "t") time = line.number(word);
+    else if (word == "p") place = line.vector(word);
+    else line.fail(fmt::format("unknown word '{}'; a key is: move NAME  t SECONDS  p X Y Z", word));
+  }
+  if (!time) line.fail("no time: expected t SECONDS");
+  if (!place) line.fail("no position: expected p X Y Z");
+  auto move = std::find_if(moves.begin(), moves.end(), [&](const KeyFrameMove& m) { return m.name == name; });
+  if (move == moves.end()) move = moves.insert(moves.end(), {name, number, {}, {}});
+  if (!move->times.empty() && !(*time > move->times.back()))
+    line.fail(fmt::format("time {:g} of '{}', expected one after {:g}", *time, name, move->times.back()));
+  move->times.push_back(*time);
+  move->offsets.push_back(*place);
 }
 
 // ---------------------------------------------------------------------------------------------------------------
@@ -142,9 +183,9 @@ glm::dvec3 perpendicularTo(const glm::dvec3& n) {
 
 }  // namespace
 
-std::vector<KeyFrame> readKeyFrames(const std::filesystem::path& file) {
+KeyFrames readKeyFrames(const std::filesystem::path& file) {
   const std::string text = readFileText(file);
-  std::vector<KeyFrame> keys;
+  KeyFrames keys;
   int number = 0;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
@@ -153,9 +194,13 @@ std::vector<KeyFrame> readKeyFrames(const std::filesystem::path& file) {
     ++number;
     line = line.substr(0, line.find('#'));
     const LineReader reader(line, file, number);
-    if (!LineReader(reader).word().empty()) keys.push_back(readKey(reader));
+    LineReader rest = reader;
+    const std::string_view first = rest.word();
+    if (first == "move") readMove(rest, number, keys.moves);
+    else if (!first.empty()) keys.camera.push_back(readKey(reader));
   }
-  if (keys.size() < 2) throwBadInput("{}: {} key frames, expected at least 2", file.string(), keys.size());
+  if (keys.camera.size() == 1 || (keys.camera.empty() && keys.moves.empty()))
+    throwBadInput("{}: {} key frames of the camera, expected at least 2", file.string(), keys.camera.size());
   return keys;
 }
 

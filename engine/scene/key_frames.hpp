@@ -1,16 +1,21 @@
-// Camera paths (no GL): key frames read from a text file and the natural cubic spline through them.
+// Key frames read from a text file (no GL): a camera path with the natural cubic spline through it, and things of the
+// scene that are carried along.
 //
 // File: one key per line, words and numbers separated by blanks; '#' starts a comment.
 //   p X Y Z  d X Y Z  u X Y Z  [r X Y Z]  [f DEGREES]  [a ASPECT]
-// p position, d viewing direction, u up, f vertical field of view; r (right) and a (aspect) are accepted and ignored,
-// as they follow from the others and from the picture's size. This is the format of the LPV original's public demo.
+// is a key of the camera: p position, d viewing direction, u up, f vertical field of view; r (right) and a (aspect) are
+// accepted and ignored, as they follow from the others and from the picture's size. This is the format of the LPV
+// original's public demo.
+//   move NAME  t SECONDS  p X Y Z
+// is a key of all meshes and lamps of that name: at this time of the scene they are moved by p from where the scene has
+// them. A name with blanks stands in double quotes. Times of a name rise.
 #pragma once
 
 #include "scene/scene.hpp"
 
 #include <filesystem>
 #include <optional>
-#include <string_view>
+#include <string>
 #include <vector>
 
 namespace lucerna {
@@ -22,9 +27,23 @@ struct KeyFrame {
   std::optional<double> verticalFov;  ///< radians
 };
 
+/// The keys of what is carried.
+struct KeyFrameMove {
+  std::string name;  ///< of meshes and lamps
+  int line = 0;  ///< of its first key
+  std::vector<double> times;  ///< rising, seconds
+  std::vector<glm::dvec3> offsets;  ///< one a time, scene units
+};
+
+struct KeyFrames {
+  std::vector<KeyFrame> camera;  ///< none, or at least two
+  std::vector<KeyFrameMove> moves;
+};
+
 /// Reads a key-frame file. Throws Error(badInput) naming file and line if a number is missing, a word unknown, a
-/// direction zero, up parallel to direction, or there are fewer than two keys.
-std::vector<KeyFrame> readKeyFrames(const std::filesystem::path& file);
+/// direction zero, up parallel to direction or a time not after the one before; and if there is no key, or a single one
+/// of the camera.
+KeyFrames readKeyFrames(const std::filesystem::path& file);
 
 /// Natural cubic spline through key frames (position, direction and up separately; knots at 0, 1, 2, ...):
 /// second derivative 0 at both ends, first and second derivatives continuous at the keys.

@@ -27,7 +27,7 @@ std::vector<int> appendLights(Scene& scene, std::span<const ModelLight> lights) 
       scene.sun = DirectionalLight{glm::normalize(light.direction), colour, kSunDiameter};
     } else if (light.kind == ModelLight::Kind::point && placed) {
       places[i] = static_cast<int>(scene.points.size());
-      scene.points.push_back({light.position, intensity});
+      scene.points.push_back({light.position, intensity, 0.0, light.name});
     } else if (light.kind == ModelLight::Kind::spot && placed && aimed && light.outerAngle > 0.0) {
       const double outer = std::min(light.outerAngle, kLargestSpotAngle);
       if (light.outerAngle > kLargestSpotAngle)
@@ -35,7 +35,8 @@ std::vector<int> appendLights(Scene& scene, std::span<const ModelLight> lights) 
                    light.name);
       const double inner = std::clamp(light.innerAngle, 0.0, outer);
       places[i] = static_cast<int>(scene.spots.size());
-      scene.spots.push_back({light.position, glm::normalize(light.direction), intensity, inner, outer});
+      scene.spots.push_back(
+          {light.position, glm::normalize(light.direction), intensity, inner, outer, 0.0, light.name});
     } else {
       ++others;
     }

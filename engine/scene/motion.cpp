@@ -1,10 +1,16 @@
 #include "scene/motion.hpp"
 
 #include "base/error.hpp"
+#include "scene/curve.hpp"
+
+#include <fmt/ranges.h>
+#include <glm/gtc/matrix_transform.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <set>
+#include <utility>
 
 namespace lucerna {
 
@@ -60,6 +66,9 @@ std::vector<std::size_t> poseMeshes(Scene& scene, double seconds) {
   }
   for (const SceneMotion::Part part : {SceneMotion::Part::meshes, SceneMotion::Part::objects})
     if (motion[part]) motion[part](scene, seconds);
+  for (const SceneMotion::Move& move : motion.moves)
+    for (const std::size_t mesh : move.meshes)
+      transformMesh(scene, scene.meshes[mesh], glm::translate(glm::dmat4(1.0), move.offset(seconds)));
   std::vector<std::size_t> changed;
   for (std::size_t k = 0; k < motion.meshes.size(); ++k) {
     const Mesh& mesh = scene.meshes[motion.meshes[k]];
@@ -113,13 +122,64 @@ SceneMotion& motionOf(Scene& scene) {
   return *scene.motion;
 }
 
+void addMoves(Scene& scene, const std::vector<KeyFrameMove>& moves, const std::filesystem::path& file) {
+  if (moves.empty()) return;
+  SceneMotion& motion = motionOf(scene);
+  for (const KeyFrameMove& keys : moves) {
+    std::erase_if(motion.moves, [&](const SceneMotion::Move& other) { return other.name == keys.name; });
+    SceneMotion::Move move{keys.name, {}, {}, {}, {}};
+    const auto find = [&](const auto& things, std::vector<std::size_t>& found) {
+      for (std::size_t i = 0; i < things.size(); ++i)
+        if (things[i].name == keys.name) found.push_back(i);
+    };
+    find(scene.meshes, move.meshes);
+    find(scene.spots, move.spots);
+    find(scene.points, move.points);
+    if (move.meshes.empty() && move.spots.empty() && move.points.empty()) {
+      constexpr std::size_t kMost = 12;
+      std::set<std::string> names;
+      const auto list = [&](const auto& things) {
+        for (const auto& thing : things)
+          if (!thing.name.empty() && names.size() < kMost) names.insert(fmt::format("'{}'", thing.name));
+      };
+      list(scene.spots), list(scene.points), list(scene.meshes);
+      throwBadInput("{}:{}: no mesh and no lamp of the scene is named '{}'; there are {}{}", file.string(), keys.line,
+                    keys.name, fmt::join(names, ", "), names.size() < kMost ? "" : ", ...");
+    }
+    Curve curve;
+    curve.interpolation = Curve::Interpolation::cubic;
+    curve.width = 3;
+    curve.times = keys.times;
+    for (const glm::dvec3& offset : keys.offsets)
+      curve.values.insert(curve.values.end(), {offset.x, offset.y, offset.z});
+    move.offset = [curve = std::move(curve)](double seconds) {
+      std::array<double, 3> value{};
+      curve.at(seconds, value);
+      return glm::dvec3(value[0], value[1], value[2]);
+    };
+    motion.end = std::max(motion.end, keys.times.back());
+    motion.names.push_back(keys.name);
+    motion.moves.push_back(std::move(move));
+  }
+}
+
 void finishMotion(Scene& scene) {
   if (!scene.motion) return;
   SceneMotion& motion = *scene.motion;
+  if (!motion.restVertices.empty()) {
+    scene.vertices = motion.restVertices;
+    scene.indices = motion.restIndices;
+    scene.spots = motion.restSpots;
+    scene.points = motion.restPoints;
+  }
+  for (const SceneMotion::Move& move : motion.moves)
+    motion.meshes.insert(motion.meshes.end(), move.meshes.begin(), move.meshes.end());
   std::ranges::sort(motion.meshes);
   motion.meshes.erase(std::unique(motion.meshes.begin(), motion.meshes.end()), motion.meshes.end());
   motion.restVertices = scene.vertices;
   motion.restIndices = scene.indices;
+  motion.restSpots = scene.spots;
+  motion.restPoints = scene.points;
   motion.bounds = scene.bounds;
   constexpr int kTimes = 64;
   if (!motion.meshes.empty())
@@ -157,8 +217,18 @@ SceneChange poseAt(Scene& scene, double seconds) {
   };
   using Part = SceneMotion::Part;
   change.sun = pose(Part::sun, scene.sun);
-  change.lamps = pose(Part::spots, scene.spots);
-  change.lamps = pose(Part::points, scene.points) || change.lamps;
+  /// Lamps, some of which are carried from where their part has placed them, or from where they were loaded.
+  const auto poseLamps = [&](Part part, auto& lamps, const auto& rest, auto carried) {
+    const auto before = lamps;
+    for (const SceneMotion::Move& move : motion.moves)
+      for (const std::size_t i : move.*carried) lamps[i].position = rest[i].position;
+    if (motion[part]) motion[part](scene, seconds);
+    for (const SceneMotion::Move& move : motion.moves)
+      for (const std::size_t i : move.*carried) lamps[i].position += move.offset(seconds);
+    return !isSame(before, lamps);
+  };
+  change.lamps = poseLamps(Part::spots, scene.spots, motion.restSpots, &SceneMotion::Move::spots);
+  change.lamps = poseLamps(Part::points, scene.points, motion.restPoints, &SceneMotion::Move::points) || change.lamps;
   const std::vector<Material> materials = motion[Part::media] ? scene.materials : std::vector<Material>{};
   change.media = pose(Part::media, scene.media);
   change.materials = motion[Part::media] && !isSame(materials, scene.materials);

@@ -1,15 +1,19 @@
 // What of a scene changes over time, and the scene at a time (no GL).
 //
 // Time is in seconds; files are loaded as they are at time 0. What moves is given by curves in the scene's JSON
-// (scene_file.cpp) and by animations of glTF files (gltf_motion.cpp). The pose at a time depends on that time alone,
-// not on the poses before.
+// (scene_file.cpp), by animations of glTF files (gltf_animations.cpp) and by key frames of what is carried. The pose at
+// a time depends on that time alone, not on the poses before.
 #pragma once
 
+#include "scene/key_frames.hpp"
 #include "scene/scene.hpp"
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -32,12 +36,22 @@ struct SceneMotion {
   /// Sets its part of the scene as it is at a time; a part that nothing moves has none. Meshes are as loaded before.
   using Pose = std::function<void(Scene& scene, double seconds)>;
 
+  /// What is carried, after curves and animations have placed it.
+  struct Move {
+    std::string name;
+    std::function<glm::dvec3(double seconds)> offset;
+    std::vector<std::size_t> meshes, spots, points;
+  };
+
   std::array<Pose, static_cast<std::size_t>(Part::count)> parts;
+  std::vector<Move> moves;  ///< one a name
   double end = 0.0;  ///< of the last key, seconds
   std::vector<std::string> names;  ///< of what moves, for people
   Bounds bounds;  ///< of the scene at 64 times from 0 to `end`
   std::vector<Vertex> restVertices;  ///< the scene's as loaded
   std::vector<std::uint32_t> restIndices;
+  std::vector<SpotLight> restSpots;
+  std::vector<PointLight> restPoints;
   std::vector<std::size_t> meshes;  ///< that move, rising
 
   Pose& operator[](Part part) { return parts[static_cast<std::size_t>(part)]; }
@@ -64,7 +78,12 @@ void updateBounds(Scene& scene, std::size_t mesh);
 /// The motion of a scene that is being loaded, made if there is none yet.
 SceneMotion& motionOf(Scene& scene);
 
-/// Ends loading: what the bounds of the motion are.
+/// Moves meshes and lamps by their names, instead of other keys of the same name; finishMotion() comes next. Throws
+/// Error(badInput) naming `file` and line if nothing has a name.
+void addMoves(Scene& scene, const std::vector<KeyFrameMove>& moves, const std::filesystem::path& file);
+
+/// Ends loading, also once more after a change of the motion: notes what is at rest, and the bounds. The scene is then
+/// as at time 0.
 void finishMotion(Scene& scene);
 
 /// Poses a scene as it is at a time. Bounds hold the scene at that time and those of the motion, so that they do not

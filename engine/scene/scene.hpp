@@ -121,6 +121,7 @@ struct SpotLight {
   double innerAngle = 0.5;  ///< half angle of the cone of full intensity, radians; 0..outerAngle
   double outerAngle = 0.7;  ///< half angle of the cone, radians; above 0, at most kLargestSpotAngle
   double radius = 0.0;  ///< as PointLight's
+  std::string name = {};  ///< empty: none
 };
 
 /// A lamp of the same intensity in all directions; its flux is 4 pi intensity.
@@ -129,6 +130,7 @@ struct PointLight {
   glm::vec3 intensity{0.0f};  ///< radiant intensity, W/sr
   double radius =
       0.0;  ///< of a ball that is not seen itself, of the same radiance everywhere, intensity / (pi radius^2)
+  std::string name = {};  ///< empty: none
 };
 
 /// A spot light has one perspective shadow map, so its cone must be well below a half space: 80 degrees.

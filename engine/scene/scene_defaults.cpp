@@ -13,6 +13,7 @@
 #include "base/log.hpp"
 #include "scene/clear_sky.hpp"
 #include "scene/key_frames.hpp"
+#include "scene/motion.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -89,18 +90,20 @@ Camera outsideView(const Bounds& bounds) {
 }  // namespace
 
 std::vector<KeyFrame> keyFramesOf(const Scene& scene, const fs::path& file) {
-  std::vector<KeyFrame> keys = readKeyFrames(file);
+  std::vector<KeyFrame> keys = readKeyFrames(file).camera;
   for (KeyFrame& key : keys) key.position -= scene.origin;
   return keys;
 }
 
-void setKeyFrames(Scene& scene, const fs::path& file) {
+void setKeyFrames(Scene& scene, const fs::path& file, bool andCamera) {
+  addMoves(scene, readKeyFrames(file).moves, file);
   const std::vector<KeyFrame> keys = keyFramesOf(scene, file);
+  if (keys.empty()) return;
   scene.keyFrames = file;
-  if (!scene.cameras.empty()) return;
+  if (!andCamera) return;
   Camera camera = Spline(keys).view(0);
   camera.name = "default";
-  scene.cameras.push_back(std::move(camera));
+  scene.cameras = {std::move(camera)};
 }
 
 void setDefaultSun(Scene& scene) {
@@ -113,7 +116,7 @@ void setDefaultSun(Scene& scene) {
 void setDefaultView(Scene& scene) {
   if (const auto data = findDataFolder()) {
     const fs::path walk = *data / "keyFrames" / (scene.name + ".txt");
-    if (fs::exists(walk)) setKeyFrames(scene, walk);
+    if (fs::exists(walk)) setKeyFrames(scene, walk, scene.cameras.empty());
   }
   // Cameras that animations would have turned, or that were read with the wrong handedness, may see nothing: then they
   // do not come first.

@@ -1,6 +1,7 @@
 // Our scene JSON: a model, and properties that its file cannot express. One object; every key but "model" is optional.
 //   "description": text for people
-//   "model":       path of the model, relative to the JSON
+//   "model":       path of the model, relative to the JSON; or an array of such, where only surfaces are read of the
+//                  second and later ones, which stand still unless "objects" or key frames move them
 //   "scale":       millimetres per scene unit
 //   "camera":      {"position": [x,y,z], "target": [x,y,z] or "direction": [x,y,z], "up": [x,y,z],
 //                  "fov": vertical, degrees}
@@ -12,12 +13,13 @@
 //   "spots":       [{"position": [x,y,z], "direction": [x,y,z] or "target": [x,y,z],
 //                   "intensity": [r,g,b] on the axis, W/sr,
 //                   "innerAngle", "outerAngle": half angles of the cone, degrees; SpotLight has the formula,
-//                   "radius": of its ball (0)}]
-//   "points":      [{"position": [x,y,z], "intensity": [r,g,b], W/sr, "radius": of its ball (0)}]
+//                   "radius": of its ball (0), "name": for key frames}]
+//   "points":      [{"position": [x,y,z], "intensity": [r,g,b], W/sr, "radius": of its ball (0), "name": for key
+//   frames}]
 //                  If one of these is given and "sun" is not, there is no default sun.
 //   "background":  [r,g,b], radiance visible where there is no environment
 //   "exposure":    factor before tone mapping
-//   "keyFrames":   path of the camera path, relative to the JSON
+//   "keyFrames":   path of the camera path and of what is carried (scene/key_frames.hpp), relative to the JSON
 //   "environment": {"radiance": [r,g,b], constant or a factor (1) on
 //                   "picture": path of a latitude-longitude hdr, exr or pfm; "rotation": degrees about +y},
 //                  or {"sky": {"turbidity": 1.7 to 10 (3), "ground": albedo below the horizon (0.2)},
@@ -162,6 +164,7 @@ SpotLight readSpot(const Value& object) {
   std::optional<glm::vec3> intensity;
   std::optional<double> inner, outer;
   double radius = 0.0;
+  std::string name;
   const auto angle = [](std::optional<double>& result) {
     return [&result](const Value& v) { result = v.number("a half angle in degrees") * kDegree; };
   };
@@ -173,6 +176,7 @@ SpotLight readSpot(const Value& object) {
                          {"innerAngle", angle(inner)},
                          {"outerAngle", angle(outer)},
                          {"radius", radiusOf(radius)},
+                         {"name", [&](const Value& v) { name = v.text(); }},
                      });
   if (!position || !intensity || !inner || !outer)
     object.fail("a spot with \"position\", \"intensity\", \"innerAngle\" and \"outerAngle\"");
@@ -182,20 +186,23 @@ SpotLight readSpot(const Value& object) {
   if (!(*outer > 0.0 && *outer <= kLargestSpotAngle * (1.0 + 1e-12)))
     object.at("outerAngle").fail("a half angle above 0 and at most 80 degrees");
   if (!(*inner >= 0.0 && *inner <= *outer)) object.at("innerAngle").fail("a half angle from 0 to \"outerAngle\"");
-  return {*position, direction ? *direction : glm::normalize(*target - *position), *intensity, *inner, *outer, radius};
+  return {*position, direction ? *direction : glm::normalize(*target - *position), *intensity, *inner, *outer, radius,
+          name};
 }
 
 PointLight readPoint(const Value& object) {
   std::optional<glm::dvec3> position;
   std::optional<glm::vec3> intensity;
   double radius = 0.0;
+  std::string name;
   readObject(object, {
                          {"position", [&](const Value& v) { position = v.vector(); }},
                          {"intensity", [&](const Value& v) { intensity = v.light(); }},
                          {"radius", radiusOf(radius)},
+                         {"name", [&](const Value& v) { name = v.text(); }},
                      });
   if (!position || !intensity) object.fail("a point light with \"position\" and \"intensity\"");
-  return {*position, *intensity, radius};
+  return {*position, *intensity, radius, name};
 }
 
 template <class Light>
@@ -369,9 +376,10 @@ void addMotion(const std::shared_ptr<const SceneJson>& json, Scene& scene) {
     const Value objects = json->root(0.0).at("objects");
     for (const auto& [mesh, matrix] : readObjects(objects, scene))
       if (!keyTimesIn(objects.json.at(scene.meshes[mesh].name)).empty()) motionOf(scene).meshes.push_back(mesh);
-    add(Part::objects, "objects", [json](Scene& posed, double t) {
+    // Others are placed already: key frames may move them from there.
+    add(Part::objects, "objects", [json, moving = motionOf(scene).meshes](Scene& posed, double t) {
       for (const auto& [mesh, matrix] : readObjects(json->root(t).at("objects"), posed))
-        if (std::ranges::binary_search(posed.motion->meshes, mesh)) transformMesh(posed, posed.meshes[mesh], matrix);
+        if (std::ranges::find(moving, mesh) != moving.end()) transformMesh(posed, posed.meshes[mesh], matrix);
     });
   }
   if (json->moves("sun")) add(Part::sun, "sun", [json](Scene& posed, double t) { posed.sun = json->sunAt(t)->light; });
@@ -424,12 +432,20 @@ Scene loadSceneFile(const std::filesystem::path& file) {
   if (root.has("scene")) return loadOriginalScene(root);
 
   // Values given here are kept until the model is loaded: they override those of the model's file.
-  std::filesystem::path model, keyFrames;
+  std::vector<std::filesystem::path> models;
+  std::filesystem::path keyFrames;
   std::optional<double> exposure;
   std::optional<glm::vec3> background;
   const auto later = [](const Value&) {};
   readObject(root, {{"description", [&](const Value& v) { static_cast<void>(v.text()); }},
-                    {"model", [&](const Value& v) { model = v.path(); }},
+                    {"model",
+                     [&](const Value& v) {
+                       if (!v.json.is_array()) models = {v.path()};
+                       else
+                         for (std::size_t i = 0; i < v.json.size(); ++i) models.push_back(v.at(i).path());
+                       for (const std::filesystem::path& model : models)
+                         if (lowerExtension(model) == ".json") v.fail("a model, not another scene JSON");
+                     }},
                     {"scale", [&](const Value& v) { json->millimetresPerUnit = v.positiveNumber(); }},
                     {"background", [&](const Value& v) { background = v.light(); }},
                     {"exposure", [&](const Value& v) { exposure = v.positiveNumber(); }},
@@ -444,13 +460,13 @@ Scene loadSceneFile(const std::filesystem::path& file) {
                     {"materials", later},
                     {"cameraMedium", later},
                     {"objects", later}});
-  if (model.empty()) throwBadInput("{}: no key \"model\", the path of the model relative to this file", file.string());
+  if (models.empty()) throwBadInput("{}: no key \"model\", the path of the model relative to this file", file.string());
   const bool hasCameras = root.has("camera") || root.has("cameras");
   if (root.has("camera") && root.has("cameras"))
     throwBadInput("{}: both \"camera\" and \"cameras\", expected one of them", file.string());
-  if (lowerExtension(model) == ".json") root.at("model").fail("a model, not another scene JSON");
 
-  Scene scene = loadModel(model);
+  Scene scene = loadModel(models.front());
+  for (std::size_t i = 1; i < models.size(); ++i) addModel(scene, models[i]);
   scene.name = file.stem().string();
   scene.file = file;
   json->materials = scene.materials;
@@ -487,12 +503,9 @@ Scene loadSceneFile(const std::filesystem::path& file) {
     scene.bounds = {};
     for (const Mesh& mesh : scene.meshes) scene.bounds.add(mesh.bounds);
   }
-  if (hasCameras || !keyFrames.empty()) useChosenView(scene);
   if (hasCameras) scene.cameras = json->camerasAt(scene, 0.0), replace(SceneMotion::Part::views);
-  if (!keyFrames.empty()) {
-    if (!hasCameras) scene.cameras.clear();
-    setKeyFrames(scene, keyFrames);
-  }
+  if (!keyFrames.empty()) setKeyFrames(scene, keyFrames, !hasCameras);
+  if (hasCameras || !scene.keyFrames.empty()) useChosenView(scene);
   if (!root.has("environment")) setDefaultSky(scene);
   else if (const Value environment = root.at("environment"); !environment.json.is_null())
     scene.environment = readEnvironment(environment, sun         ? sun

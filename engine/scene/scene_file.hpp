@@ -5,11 +5,15 @@
 #include "scene/scene.hpp"
 
 #include <filesystem>
+#include <vector>
 
 namespace lucerna {
 
 /// A model of any format, with defaults for what the file leaves out (scene_defaults.cpp).
 Scene loadModel(const std::filesystem::path& file);
+
+/// Adds the surfaces of another model. Throws Error(badInput) if it has animations.
+void addModel(Scene& scene, const std::filesystem::path& file);
 
 /// The scene JSON: a model with cameras, lights and settings. Its keys: scene_file.cpp.
 Scene loadSceneFile(const std::filesystem::path& file);
@@ -34,10 +38,11 @@ void setDefaultSky(Scene& scene);
 /// of 1 shows, choose another exposure.
 void setExposureForLamps(Scene& scene);
 
-/// The keys of a file as places of the scene (Scene::origin).
+/// The camera's keys of a file as places of the scene (Scene::origin).
 std::vector<KeyFrame> keyFramesOf(const Scene& scene, const std::filesystem::path& file);
 
-/// Sets `file` as the scene's camera path and, if there is no camera yet, its first key as the first camera.
-void setKeyFrames(Scene& scene, const std::filesystem::path& file);
+/// Carries what `file` has keys of. If it has some of the camera, it becomes the scene's camera path and, with
+/// `andCamera`, its first key the only camera.
+void setKeyFrames(Scene& scene, const std::filesystem::path& file, bool andCamera);
 
 }  // namespace lucerna

@@ -15,6 +15,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <iterator>
 #include <sstream>
 #include <tuple>
 
@@ -190,11 +192,13 @@ void addMovingViews(Scene& scene, const ModelViews& views, const std::vector<int
 
 }  // namespace
 
-Scene loadModel(const fs::path& file) {
-  Scene scene;
+namespace {
+
+/// The surfaces of a model, and its lights and cameras.
+ModelViews readSurfaces(Scene& scene, const fs::path& file) {
   scene.name = file.stem().string();
   scene.file = file;
-  const ModelViews views = readModel(scene, readFileBytes(file));  // also tells a missing file or a folder
+  ModelViews views = readModel(scene, readFileBytes(file));  // also tells a missing file or a folder
 
   if (scene.indices.empty() && scene.droppedTriangles > 0)
     throwBadInput("{}: nothing to draw: none of its {} triangles has finite positions (up to 3.4e38)", file.string(),
@@ -205,7 +209,14 @@ Scene loadModel(const fs::path& file) {
   if (scene.droppedTriangles > 0)
     logWarning("{}: {} triangles with positions that are not finite (up to 3.4e38) ignored", file.string(),
                scene.droppedTriangles);
+  return views;
+}
 
+}  // namespace
+
+Scene loadModel(const fs::path& file) {
+  Scene scene;
+  const ModelViews views = readSurfaces(scene, file);
   const std::vector<int> lights = appendLights(scene, views.lights);
   setDefaultSun(scene);
   const std::vector<int> cameras = appendCameras(scene, views.cameras);
@@ -213,6 +224,44 @@ Scene loadModel(const fs::path& file) {
   setDefaultView(scene);
   if (views.moves) addMovingViews(scene, views, lights, cameras, scene.cameras.size() - cameraCount);
   return scene;
+}
+
+void addModel(Scene& scene, const fs::path& file) {
+  Scene other;
+  readSurfaces(other, file);
+  if (other.motion)
+    throwBadInput("{}: it has animations, which only the first model of a scene may have", file.string());
+  const auto shift = [](int& index, std::size_t by) { index += index >= 0 ? static_cast<int>(by) : 0; };
+  const auto firstVertex = static_cast<std::uint32_t>(scene.vertices.size()),
+             firstIndex = static_cast<std::uint32_t>(scene.indices.size());
+  const glm::dvec3 offset = other.origin - scene.origin;
+  for (Vertex& vertex : other.vertices) vertex.position = glm::vec3(glm::dvec3(vertex.position) + offset);
+  for (std::uint32_t& index : other.indices) index += firstVertex;
+  for (Mesh& mesh : other.meshes) {
+    mesh.firstIndex += firstIndex;
+    shift(mesh.material, scene.materials.size());
+    mesh.bounds.min += offset;
+    mesh.bounds.max += offset;
+    scene.bounds.add(mesh.bounds);
+  }
+  for (Material& material : other.materials) {
+    shift(material.interior, scene.media.size());
+    for (int* texture :
+         {&material.emissionTexture, &material.diffuseTexture, &material.alphaTexture, &material.normalTexture})
+      shift(*texture, scene.textures.size());
+    if (material.metalMap) shift(material.metalMap->texture, scene.textures.size());
+  }
+  const auto append = [](auto& to, auto& from) {
+    to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
+  };
+  append(scene.vertices, other.vertices);
+  append(scene.indices, other.indices);
+  append(scene.meshes, other.meshes);
+  append(scene.materials, other.materials);
+  append(scene.textures, other.textures);
+  append(scene.media, other.media);
+  scene.degenerateTriangles += other.degenerateTriangles;
+  scene.droppedTriangles += other.droppedTriangles;
 }
 
 namespace {

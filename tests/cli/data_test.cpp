@@ -97,7 +97,7 @@ TEST_F(DataFolder, TheWalksSceneIsTheDataFolders) {
   const RunResult result = run("LUCERNA_DATA='" + (folder_ / "data").string() +
                                "' '" LUCERNA_BINARY "' walk --record '" + (folder_ / "out").string() + "'");
   EXPECT_EQ(result.exitCode, 2);
-  EXPECT_NE(result.err.find("data/assets/atrium/atrium.json: no such file"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("data/assets/atrium/day.json: no such file"), std::string::npos) << result.err;
 }
 
 TEST(Executable, HoldsNoPathOfTheSourceTree) {

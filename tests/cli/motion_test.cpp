@@ -51,6 +51,32 @@ TEST_F(Motion, ARecordingHasThePicturesOfItsMoments) {
     EXPECT_EQ(readBitmap(path(frame)).rgba, readBitmap(path("m.png")).rgba) << frame;
   }
   EXPECT_NE(readBitmap(path("frames/frame_0000.png")).rgba, readBitmap(path("frames/frame_0002.png")).rgba);
+  // Without --fps they are spread over the scene's two seconds.
+  result = lucerna("walk s.json --record spread --frames 3" + picture);
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  EXPECT_EQ(readBitmap(path("spread/frame_0001.png")).rgba, readBitmap(path("frames/frame_0001.png")).rgba);
+  result = lucerna("render s.json -o m.png --time 2" + picture);
+  EXPECT_EQ(readBitmap(path("spread/frame_0002.png")).rgba, readBitmap(path("m.png")).rgba);
+}
+
+TEST_F(Motion, KeyFramesCarryInAWalkAsInTheScene) {
+  folder_.write("keys.txt", "move card t 0 p 0 0 0\nmove card t 2 p 0 0.6 1\n");
+  std::string scene;
+  std::getline(std::ifstream(path("s.json")), scene, '\0');
+  folder_.write("carried.json", scene.replace(0, 1, "{\"keyFrames\": \"keys.txt\", "));
+  const std::string picture = " --technique direct --size 48x32 --pixel-samples 4";
+  for (const char* walk : {"s.json --record keys --keys keys.txt", "carried.json --record scene"}) {
+    const RunResult result = lucerna("walk " + std::string(walk) + " --frames 3" + picture);
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+  }
+  for (const char* command : {"render s.json -o still.png", "render carried.json -o moved.png"}) {
+    const RunResult result = lucerna(command + std::string(" --time 2") + picture);
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+  }
+  const auto moved = readBitmap(path("moved.png")).rgba;
+  EXPECT_NE(moved, readBitmap(path("still.png")).rgba);
+  EXPECT_EQ(readBitmap(path("keys/frame_0002.png")).rgba, moved);
+  EXPECT_EQ(readBitmap(path("scene/frame_0002.png")).rgba, moved);
 }
 
 TEST_F(Motion, TheWindowPlaysAndHolds) {

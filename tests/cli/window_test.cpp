@@ -385,7 +385,7 @@ TEST_F(Window, KeyFramesAreWrittenAsTheyAreRead) {
       "1 key R\n2 key K\n3 down W\n30 up W\n31 key K\n32 touch Record and window\n33 touch Record and window/write\n");
   const RunResult result = play(path("input.txt"));
   ASSERT_EQ(result.exitCode, 0) << result.err;
-  const auto keys = lucerna::readKeyFrames(path("key_frames.txt"));
+  const auto keys = lucerna::readKeyFrames(path("key_frames.txt")).camera;
   ASSERT_EQ(keys.size(), 2u);
   EXPECT_GT(glm::length(keys[0].position - keys[1].position), 0.1);
 }

@@ -40,14 +40,14 @@ TEST_F(Pictures, TheAtriumIsWhatItsReadmeSays) {
   EXPECT_TRUE(features.alphaMasks);
   EXPECT_TRUE(features.diffuseTextures);
   EXPECT_GE(atrium().cameras.size(), 3u);
-  EXPECT_GE(readKeyFrames(atrium().keyFrames).size(), 7u);
+  EXPECT_GE(readKeyFrames(atrium().keyFrames).camera.size(), 7u);
 }
 
 // Along the walk: every value finite, light everywhere but never more in the shade than the sun gives where it shines.
 TEST_F(Pictures, TheWalkIsFiniteLitAndWithoutLeaksBrighterThanTheSun) {
   Renderer direct(context(), programs(), atrium(), settings(Component::direct));
   Renderer indirect(context(), programs(), atrium(), settings(Component::indirect));
-  const Spline path(readKeyFrames(atrium().keyFrames));
+  const Spline path(readKeyFrames(atrium().keyFrames).camera);
   const float sunlit =
       atrium().sun->irradiance.x * 0.7f / static_cast<float>(M_PI);  // the brightest stone, facing the sun
   for (int i = 0; i <= 4; ++i) {
@@ -70,7 +70,7 @@ TEST_F(Pictures, TheWalkIsFiniteLitAndWithoutLeaksBrighterThanTheSun) {
 // Consecutive views of the walk: what changes when only the volume moves is flicker.
 TEST_F(Pictures, ASlowWalkDoesNotFlicker) {
   Renderer renderer(context(), programs(), atrium(), settings(Component::indirect));
-  const Spline path(readKeyFrames(atrium().keyFrames));
+  const Spline path(readKeyFrames(atrium().keyFrames).camera);
   double largest = 0.0;
   for (int view = 301; view <= 316; ++view) {
     renderer.render(path.view(view));

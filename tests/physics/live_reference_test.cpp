@@ -38,7 +38,7 @@ class LiveReference : public SharedProgramsTest {
   /// `views` along the scene's path, techniques in turn.
   Tally judge(const std::string& file, int views, std::uint32_t samplesOfReference) const {
     const Scene scene = loadScene(std::string(LUCERNA_SOURCE_DIR "/assets/") + file);
-    const Spline path(readKeyFrames(scene.keyFrames));
+    const Spline path(readKeyFrames(scene.keyFrames).camera);
     PathTracer live = sampler(scene, 1), reference = sampler(scene, 2);
     Tally tally;
     constexpr std::array<std::string_view, 3> kTechniques{"direct", "rsm", "lpv"};

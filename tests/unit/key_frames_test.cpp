@@ -183,7 +183,7 @@ TEST(KeyFrameFiles, AreRead) {
                                  "p 1 -2.5 3e1  d 0 0 -2  u 0 3 0  r 1 0 0  f 60 a 1.777\r\n"
                                  "  \t \n"
                                  "u 0 1 0\td 1 1 0 p 4 5 6 # words in any order\n");
-  const std::vector<KeyFrame> keys = readKeyFrames(file);
+  const std::vector<KeyFrame> keys = readKeyFrames(file).camera;
   ASSERT_EQ(keys.size(), 2u);
   EXPECT_EQ(keys[0].position, glm::dvec3(1, -2.5, 30));
   EXPECT_EQ(keys[0].direction, glm::dvec3(0, 0, -1));
@@ -192,6 +192,26 @@ TEST(KeyFrameFiles, AreRead) {
   EXPECT_EQ(keys[1].position, glm::dvec3(4, 5, 6));
   EXPECT_FALSE(keys[1].verticalFov);
   EXPECT_NEAR(glm::dot(keys[1].direction, keys[1].up), 0.0, 1e-12);
+}
+
+TEST(KeyFrameFiles, MovesAreReadBesideTheCamera) {
+  const TempFolder folder;
+  const auto file = folder.write("walk.txt",
+                                 "move lantern t -1 p 1 2 3\n"
+                                 "p 0 0 0 d 0 0 -1 u 0 1 0\n"
+                                 "move \"old lamp\" p 4 5 6 t 0 # words in any order\n"
+                                 "p 1 0 0 d 0 0 -1 u 0 1 0\n"
+                                 "move lantern t 2.5 p -1 0 1e1\n");
+  const KeyFrames keys = readKeyFrames(file);
+  EXPECT_EQ(keys.camera.size(), 2u);
+  ASSERT_EQ(keys.moves.size(), 2u);
+  EXPECT_EQ(keys.moves[0].name, "lantern");
+  EXPECT_EQ(keys.moves[0].line, 1);
+  EXPECT_EQ(keys.moves[0].times, (std::vector<double>{-1.0, 2.5}));
+  EXPECT_EQ(keys.moves[0].offsets, (std::vector<glm::dvec3>{{1, 2, 3}, {-1, 0, 10}}));
+  EXPECT_EQ(keys.moves[1].name, "old lamp");
+  EXPECT_EQ(keys.moves[1].line, 3);
+  EXPECT_TRUE(readKeyFrames(folder.write("carried.txt", "move lantern t 0 p 1 2 3\n")).camera.empty());
 }
 
 TEST(KeyFrameFiles, ErrorsNameFileAndLine) {
@@ -212,10 +232,17 @@ TEST(KeyFrameFiles, ErrorsNameFileAndLine) {
       {"p 0 0 0 d 0 0 -1 u 0 1 0 f 180", "between 0 and 180"},
       {"p 0 0 0 d 0 0 -1 u 0 1 0 f 0", "between 0 and 180"},
       {"q 0 0 0", "unknown word 'q'"},
+      {"move", "no name after 'move'"},
+      {"move \"a b t 0 p 0 0 0", "closing quote"},
+      {"move a t 0 p 0 0", "end of line"},
+      {"move a p 0 0 0", "no time"},
+      {"move a t 0", "no position"},
+      {"move a t 0 p 0 0 0 d 0 0 1", "unknown word 'd'"},
+      {"move late t 5 p 0 0 0", "time 5 of 'late', expected one after 5"},
       {"0 0 0", "unknown word '0'"},
   };
   for (const auto& [line, what] : cases) {
-    const auto file = folder.write("walk.txt", good + "# comment\n" + line + "\n" + good);
+    const auto file = folder.write("walk.txt", "move late t 5 p 0 0 0\n# comment\n" + line + "\n" + good);
     const std::string message = badInputMessage([&] { readKeyFrames(file); });
     EXPECT_NE(message.find("walk.txt:3: "), std::string::npos) << line << ": " << message;
     EXPECT_NE(message.find(what), std::string::npos) << line << ": " << message;

@@ -5,6 +5,7 @@
 #include "base/log.hpp"
 #include "scene/clear_sky.hpp"
 #include "scene/curve.hpp"
+#include "scene/scene_file.hpp"
 #include "support/contains.hpp"
 #include "support/gltf_file.hpp"
 #include "support/temp_folder.hpp"
@@ -175,6 +176,60 @@ TEST_F(MovingScene, LampsEmissionAndViewsFollowTheirCurves) {
   EXPECT_EQ(scene.motion->end, 1.0);
 }
 
+// The keys of one name carry its mesh and its lamps alike, from where curves have placed them.
+TEST_F(MovingScene, KeyFramesCarryMeshesAndLampsByName) {
+  folder_.write("keys.txt", "move right t 1 p 0 0 0\nmove right t 3 p 0 4 8\n");
+  const std::string things =
+      R"("keyFrames": "keys.txt", "points": [{"position": [1, 1, 1], "intensity": [1, 1, 1], "name": "left"},
+      {"position": [5, 0, 1], "intensity": [1, 1, 1], "name": "right"}],
+      "spots": [{"name": "right", "position": {"times": [0, 4], "values": [[0, 0, 0], [4, 0, 0]]},
+      "direction": [0, -1, 0], "intensity": [1, 1, 1], "innerAngle": 10, "outerAngle": 20}])";
+  Scene scene = load(things);
+  EXPECT_TRUE(scene.keyFrames.empty());  // no path of the camera
+  EXPECT_EQ(scene.motion->end, 4.0);
+  EXPECT_NEAR(scene.bounds.max.z, 8.0, 1e-5);
+  const std::vector<glm::vec3> atRest = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {5, 0, 0}, {6, 0, 0}, {5, 1, 0}};
+  expectCorners(scene, atRest);
+  for (const double t : {3.5, 2.0}) {
+    const SceneChange change = poseAt(scene, t);
+    EXPECT_EQ(change.meshes, std::vector<std::size_t>{1});
+    EXPECT_TRUE(change.lamps);
+  }
+  // A cubic through two keys is halfway between them halfway.
+  expectCorners(scene, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {5, 2, 4}, {6, 2, 4}, {5, 3, 4}}, 1e-5f);
+  EXPECT_EQ(scene.points[0].position, glm::dvec3(1, 1, 1));
+  EXPECT_LT(glm::distance(scene.points[1].position, glm::dvec3(5, 2, 5)), 1e-12);
+  EXPECT_LT(glm::distance(scene.spots[0].position, glm::dvec3(2, 2, 4)), 1e-12);
+  // Other keys of that name, given later, are instead of these; keys of the camera alone leave them.
+  setKeyFrames(scene, folder_.write("other.txt", "move right t 0 p 0 -1 0\n"), false);
+  setKeyFrames(scene, folder_.write("path.txt", "p 0 0 9 d 0 0 -1 u 0 1 0\np 1 0 9 d 0 0 -1 u 0 1 0\n"), false);
+  finishMotion(scene);
+  expectCorners(scene, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {5, -1, 0}, {6, -1, 0}, {5, 0, 0}}, 1e-5f);
+  EXPECT_EQ(scene.points[1].position, glm::dvec3(5, -1, 1));
+  poseAt(scene, 2.0);
+  EXPECT_LT(glm::distance(scene.spots[0].position, glm::dvec3(2, -1, 0)), 1e-12);
+  EXPECT_EQ(scene.keyFrames, folder_ / "path.txt");
+  EXPECT_NE(scene.cameras.front().position, glm::dvec3(0, 0, 9));
+  // A scene without a motion gets one. An object that stands still is carried from where it has been placed.
+  Scene still = load(R"("objects": {"right": {"translation": [0, 0, 4]}})");
+  setKeyFrames(still, folder_ / "other.txt", false);
+  finishMotion(still);
+  expectCorners(still, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {5, -1, 4}, {6, -1, 4}, {5, 0, 4}}, 1e-5f);
+  Scene both = load(R"("objects": {"right": {"translation": [0, 0, 4]},
+      "left": {"translation": {"times": [0, 1], "values": [[0, 0, 0], [0, 0, 1]]}}})");
+  setKeyFrames(both, folder_ / "other.txt", false);
+  finishMotion(both);
+  poseAt(both, 1.0);
+  expectCorners(both, {{0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {5, -1, 4}, {6, -1, 4}, {5, 0, 4}}, 1e-5f);
+}
+
+TEST_F(MovingScene, KeyFramesOfNothingAreNamedByFileAndLine) {
+  folder_.write("keys.txt", "# lamps\nmove lantern t 0 p 0 0 0\n");
+  const std::string message = refusal(R"("keyFrames": "keys.txt")");
+  EXPECT_TRUE(contains(message, "keys.txt:2: ")) << message;
+  EXPECT_TRUE(contains(message, "named 'lantern'; there are 'left', 'right'")) << message;
+}
+
 TEST_F(MovingScene, ASunByPlaceAndHourStandsWhereItShould) {
   // At an equinox (day 81) the sun's declination is 0: at noon it stands 90 degrees less the latitude high in the
   // south, at 6 and 18 o'clock on the horizon in the east and west.
@@ -268,6 +323,9 @@ TEST(GltfMotion, NodesCarryWhatHangsOnThem) {
   EXPECT_LT(glm::distance(scene.spots[0].position, glm::dvec3(0, 0, 10)), 1e-6);
   EXPECT_LT(glm::distance(scene.spots[0].direction, glm::dvec3(-1, 0, 0)), 1e-6);
   const auto camera = std::ranges::find_if(scene.cameras, [](const Camera& c) { return c.verticalFov == 1.0; });
+  const TempFolder folder;
+  const auto second = folder.write("second.gltf", gltf.text());
+  EXPECT_TRUE(contains(badInputMessage([&] { addModel(scene, second); }), "second.gltf: it has animations"));
   ASSERT_NE(camera, scene.cameras.end());
   EXPECT_LT(glm::distance(camera->direction, glm::dvec3(-1, 0, 0)), 1e-6);
   EXPECT_LT(glm::distance(camera->up, glm::dvec3(0, 1, 0)), 1e-6);

@@ -11,7 +11,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace lucerna {
 namespace {
@@ -82,6 +86,41 @@ TEST(SceneFile, EveryKeyIsRead) {
   EXPECT_EQ(scene.background, glm::vec3(0.1f, 0.2f, 0.3f));
   EXPECT_EQ(scene.exposure, 0.5f);
   EXPECT_EQ(scene.keyFrames, folder / "walk.txt");
+}
+
+// Surfaces of a second model join those of the first, with their materials, textures and places.
+TEST(SceneFile, SeveralModelsAreOneScene) {
+  const SceneFolder folder;
+  writePng(folder / "models/red.png", Bitmap{1, 1, {255, 0, 0, 255}});
+  writePng(folder / "models/blue.png", Bitmap{1, 1, {0, 0, 255, 255}});
+  folder.write("models/red.mtl", "newmtl paint\nmap_Kd red.png\n");
+  folder.write("models/blue.mtl", "newmtl paint\nmap_Kd blue.png\nKe 1 2 3\n");
+  // So far away that an offset is taken off.
+  const std::string far = "o first\nv 1000000.03 0 0\nv 1000002.03 0 0\nv 1000000.03 2 0\nusemtl paint\nf 1 2 3\n";
+  folder.write("models/first.obj", "mtllib red.mtl\n" + far);
+  folder.write("models/second.obj", "mtllib blue.mtl\no second\nv 1 0 0\nv 3 0 0\nv 1 2 0\nusemtl paint\nf 1 2 3\n");
+  const Scene scene =
+      loadScene(folder.write("two.json", R"({"model": ["models/first.obj", "models/second.obj"], "sun": null})"));
+  EXPECT_EQ(scene.name, "two");
+  ASSERT_EQ(scene.meshes.size(), 2u);
+  EXPECT_EQ(scene.meshes[1].name, "second");
+  const Material &first = scene.materials[static_cast<std::size_t>(scene.meshes[0].material)],
+                 &second = scene.materials[static_cast<std::size_t>(scene.meshes[1].material)];
+  EXPECT_EQ(first.emission, glm::vec3(0.0f));
+  EXPECT_EQ(second.emission, glm::vec3(1, 2, 3));
+  const auto texel = [&](const Material& material) {
+    return scene.textures[static_cast<std::size_t>(material.diffuseTexture)].bitmap.rgba;
+  };
+  EXPECT_EQ(texel(first), (std::vector<std::uint8_t>{255, 0, 0, 255}));
+  EXPECT_EQ(texel(second), (std::vector<std::uint8_t>{0, 0, 255, 255}));
+  EXPECT_NE(scene.origin, glm::dvec3(0.0));
+  const auto place = [&](std::size_t corner) {
+    return scene.origin + glm::dvec3(scene.vertices[scene.indices[corner]].position);
+  };
+  EXPECT_LT(glm::distance(place(0), glm::dvec3(1000000.03, 0, 0)), 1e-6);
+  EXPECT_EQ(place(3), glm::dvec3(1, 0, 0));
+  EXPECT_EQ(scene.meshes[1].bounds.min + scene.origin, glm::dvec3(1, 0, 0));
+  EXPECT_LT(glm::distance(scene.bounds.extent(), glm::dvec3(1000001.03, 2, 0)), 1e-6);
 }
 
 TEST(SceneFile, SeveralCamerasKeepOrderAndNames) {

@@ -98,14 +98,14 @@ TEST(SponzaTest, TheWalkIsFoundAndGivesTheFirstCamera) {
   const Scene& scene = *sponza();
   EXPECT_EQ(scene.keyFrames, std::filesystem::path(LUCERNA_SOURCE_DIR) / "keyFrames/sponza.txt");
   ASSERT_EQ(scene.cameras.size(), 1u);
-  EXPECT_EQ(scene.cameras[0].position, readKeyFrames(scene.keyFrames)[0].position);
+  EXPECT_EQ(scene.cameras[0].position, readKeyFrames(scene.keyFrames).camera[0].position);
 }
 
 // No view of the walk comes nearer than 30 cm to anything, none lies within stone (where the first hit shows its back),
 // and between two views nothing is crossed.
 TEST(SponzaTest, TheWalkKeepsClearOfWallsAndColumns) {
   SKIP_WITHOUT_SPONZA();
-  const Spline spline(readKeyFrames(sponza()->keyFrames));
+  const Spline spline(readKeyFrames(sponza()->keyFrames).camera);
   EXPECT_GE(spline.segmentCount(), 7);
   Camera last = spline.view(0);
   for (int i = 0; i < spline.viewCount(); ++i) {
