@@ -1,12 +1,13 @@
 """Writes lantern.obj and lantern.mtl: a lantern that is carried, in metres. python3 assets/lantern/generate.py
 
 It stands at the origin, y up, and its ring is 0.36 m high. Its light is a lamp of the scene at (0, 0.185, 0), above the
-flame: a flame this small is hard to hit by chance, and lights next to nothing.
+flame: a flame this small is hard to hit by chance, and lights next to nothing. So near the lamp a bright surface would
+be as hard to hit, and where a path does, a bright spot: the candle is short, and all is dark.
 """
 import math
 import pathlib
 
-IRON, WAX, FLAME = (0.16, 0.13, 0.1), (0.85, 0.78, 0.62), (9, 5.2, 1.9)  # Kd, Kd, Ke
+IRON, WAX, FLAME = (0.05, 0.04, 0.03), (0.4, 0.36, 0.28), (9, 5.2, 1.9)  # Kd, Kd, Ke
 
 
 def lathe(profile, segments, flat):
@@ -80,8 +81,8 @@ def parts():
         c, s = math.cos(math.pi * k / 3), math.sin(math.pi * k / 3)
         iron += bar(((0.078 * c, 0.026, -0.078 * s), (0.078 * c, 0.248, -0.078 * s)), 0.004)
     iron += ring((0, 0.352, 0), 0.026, 0.004)
-    wax = lathe([(0.022, 0.028), (0.022, 0.11), (0.019, 0.113), (0, 0.111)], 20, False)
-    flame = lathe([(0, 0.114), (0.006, 0.12), (0.009, 0.13), (0.007, 0.145), (0.003, 0.16), (0, 0.17)], 12, False)
+    wax = lathe([(0.022, 0.028), (0.022, 0.06), (0.019, 0.063), (0, 0.061)], 20, False)
+    flame = lathe([(0, 0.064), (0.006, 0.07), (0.01, 0.082), (0.008, 0.1), (0.004, 0.12), (0, 0.135)], 12, False)
     return [("iron", iron), ("wax", wax), ("flame", flame)]
 
 
