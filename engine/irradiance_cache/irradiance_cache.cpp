@@ -352,11 +352,11 @@ void IrradianceCache::update(const Inputs& inputs, int rounds) {
   const bool moved = !cascades_.empty() &&
                      !std::equal(cascades_.begin(), cascades_.end(), inputs.cascades.begin(), inputs.cascades.end(),
                                  [](const Cascade& a, const Cascade& b) { return a.firstCell == b.firstCell; });
-  const bool cut = cascades_.empty() || isCut(cascades_.front(), inputs.cascades.front());
+  const bool isEmpty = cascades_.empty(), cut = isEmpty || isCut(cascades_.front(), inputs.cascades.front());
   const float mostChange = inputs.fades && !cut && !followed_ ? settings_.mostChange : 0.0f;
   place(inputs);
   cascades_ = inputs.cascades;
-  if (followed_ && !cut) keep(*keepFollowed_);
+  if (followed_ && !isEmpty) keep(*keepFollowed_);
   else if (moved) keep(*keep_);
   followed_ = false;
   moved_.clear();
