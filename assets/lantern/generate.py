@@ -1,8 +1,7 @@
 """Writes lantern.obj and lantern.mtl: a lantern that is carried, in metres. python3 assets/lantern/generate.py
 
 It stands at the origin, y up, and its ring is 0.36 m high. Its light is a lamp of the scene at (0, 0.185, 0), above the
-flame: a flame this small is hard to hit by chance, and lights next to nothing. So near the lamp a bright surface would
-be as hard to hit, and where a path does, a bright spot: the candle is short, and all is dark.
+flame, which is small and lights next to nothing.
 """
 import math
 import pathlib

@@ -1,11 +1,11 @@
-#include <algorithm>
-
 #include "shared/html.hpp"
 
 #include "base/data.hpp"
 #include "base/files.hpp"
 
 #include <fmt/format.h>
+
+#include <algorithm>
 
 namespace lucerna::demo::bench {
 

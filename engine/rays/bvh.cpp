@@ -80,6 +80,12 @@ void addPlane(BvhTriangle& t) {
   t.normal2 = static_cast<float>(n[(axis + 2) % 3] / n[axis]);
 }
 
+/// Moves a triangle of the scene into the hierarchy's space, about that origin.
+void moveInto(BvhTriangle& triangle, const glm::dvec3& origin) {
+  for (glm::vec3* corner : {&triangle.a, &triangle.b, &triangle.c}) *corner = glm::vec3(glm::dvec3(*corner) - origin);
+  addPlane(triangle);
+}
+
 std::uint32_t flagsOf(const Material& material) {
   return (material.alphaMasked ? BVH_TRIANGLE_MASKED : 0u) |
          (material.emission != decltype(material.emission)(0.0f) ? BVH_TRIANGLE_EMISSIVE : 0u);
@@ -115,12 +121,11 @@ Triangles collect(const Scene& scene) {
     result.kept.push_back(triangle);
   }
   result.origin = floatingOrigin({glm::dvec3(bounds.min), glm::dvec3(bounds.max)});
-  for (BvhTriangle& triangle : result.kept)
-    for (glm::vec3* corner : {&triangle.a, &triangle.b, &triangle.c}) {
-      *corner = glm::vec3(glm::dvec3(*corner) - result.origin);
-      for (int k = 0; k < 3; ++k) result.magnitude = std::max(result.magnitude, std::abs((*corner)[k]));
-    }
-  for (BvhTriangle& triangle : result.kept) addPlane(triangle);
+  for (BvhTriangle& triangle : result.kept) {
+    moveInto(triangle, result.origin);
+    for (const glm::vec3& corner : {triangle.a, triangle.b, triangle.c})
+      for (int k = 0; k < 3; ++k) result.magnitude = std::max(result.magnitude, std::abs(corner[k]));
+  }
   return result;
 }
 
@@ -697,9 +702,7 @@ bool BvhRefit::refit(Bvh& bvh, const Scene& scene, std::span<const std::size_t> 
       triangle.a = corners[0], triangle.b = corners[1], triangle.c = corners[2];
       box.add(boxOf(triangle));
       triangle.id = static_cast<std::uint32_t>(t) | flags;
-      for (glm::vec3* corner : {&triangle.a, &triangle.b, &triangle.c})
-        *corner = glm::vec3(glm::dvec3(*corner) - bvh.origin);
-      addPlane(triangle);
+      moveInto(triangle, bvh.origin);
       for (std::uint32_t i = first; i < end; ++i) {
         bvh.triangles[index.places[i]] = triangle;
         moves[index.places[i]] = 1;

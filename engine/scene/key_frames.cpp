@@ -27,6 +27,8 @@ namespace {
 /// Below this length an interpolated direction (from unit vectors at the keys) counts as lost.
 constexpr double kLost = 1e-6;
 
+constexpr std::string_view kMoveKey = "move NAME  t SECONDS  p X Y Z";
+
 // --------------------------------------------------------------------------------------------------------------
 // reading
 
@@ -105,11 +107,9 @@ KeyFrame readKey(LineReader line) {
         line.fail(fmt::format("field of view {}, expected degrees between 0 and 180", degrees));
       key.verticalFov = degrees * kDegree;
     } else {
-      line.fail(
-          fmt::format("unknown word '{}'; a key is: p X Y Z  d X Y Z  u X Y Z  [r X Y Z]  [f DEGREES]  [a ASPECT], or: "
-                      "move NAME  t "
-                      "SECONDS  p X Y Z",
-                      word));
+      line.fail(fmt::format(
+          "unknown word '{}'; a key is: p X Y Z  d X Y Z  u X Y Z  [r X Y Z]  [f DEGREES]  [a ASPECT], or: {}", word,
+          kMoveKey));
     }
   }
   if (!position) line.fail("no position: expected p X Y Z");
@@ -134,7 +134,7 @@ void readMove(LineReader line, int number, std::vector<KeyFrameMove>& moves) {
   for (std::string_view word = line.word(); !word.empty(); word = line.word()) {
     if (word == "t") time = line.number(word);
     else if (word == "p") place = line.vector(word);
-    else line.fail(fmt::format("unknown word '{}'; a key is: move NAME  t SECONDS  p X Y Z", word));
+    else line.fail(fmt::format("unknown word '{}'; a key is: {}", word, kMoveKey));
   }
   if (!time) line.fail("no time: expected t SECONDS");
   if (!place) line.fail("no position: expected p X Y Z");

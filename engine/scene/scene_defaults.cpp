@@ -96,12 +96,12 @@ std::vector<KeyFrame> keyFramesOf(const Scene& scene, const fs::path& file) {
 }
 
 void setKeyFrames(Scene& scene, const fs::path& file, bool andCamera) {
-  addMoves(scene, readKeyFrames(file).moves, file);
-  const std::vector<KeyFrame> keys = keyFramesOf(scene, file);
-  if (keys.empty()) return;
+  const KeyFrames keys = readKeyFrames(file);
+  addMoves(scene, keys.moves, file);
+  if (keys.camera.empty()) return;
   scene.keyFrames = file;
   if (!andCamera) return;
-  Camera camera = Spline(keys).view(0);
+  Camera camera = Spline(keyFramesOf(scene, file)).view(0);
   camera.name = "default";
   scene.cameras = {std::move(camera)};
 }

@@ -190,10 +190,6 @@ void addMovingViews(Scene& scene, const ModelViews& views, const std::vector<int
   };
 }
 
-}  // namespace
-
-namespace {
-
 /// The surfaces of a model, and its lights and cameras.
 ModelViews readSurfaces(Scene& scene, const fs::path& file) {
   scene.name = file.stem().string();

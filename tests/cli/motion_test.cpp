@@ -37,6 +37,7 @@ class Motion : public testing::Test {
     return run("cd '" + folder_.path().string() + "' && '" LUCERNA_BINARY "' " + arguments);
   }
   std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
+  nlohmann::json dynamicJson() const { return nlohmann::json::parse(std::ifstream(path("page/dynamic.json"))); }
   TempFolder folder_;
 };
 
@@ -107,7 +108,7 @@ TEST_F(Motion, BenchDynamicKnowsAFloorUnderALampThatSwitches) {
       "bench dynamic lamp.json --techniques direct irradiance-cache --frames 10 --fps 5 --size 32x24 "
       "--reference-samples 64 --references references --out page");
   ASSERT_EQ(result.exitCode, 0) << result.err;
-  const nlohmann::json json = nlohmann::json::parse(std::ifstream(path("page/dynamic.json")));
+  const nlohmann::json json = dynamicJson();
   for (const nlohmann::json& row : json.at("techniques")) {
     EXPECT_EQ(row.at("l2").size(), 10u);
     EXPECT_LT(row.at("worst").get<double>(), 0.03) << row.dump();
@@ -138,7 +139,7 @@ TEST_F(Motion, BenchDynamicKnowsTheCosineOfASunThatTurns) {
       "bench dynamic sun.json --techniques direct irradiance-cache path --set path.samples=4 --frames 9 --fps 2 "
       "--size 16x12 --reference-samples 16 --references references --out page");
   ASSERT_EQ(result.exitCode, 0) << result.err;
-  const nlohmann::json json = nlohmann::json::parse(std::ifstream(path("page/dynamic.json")));
+  const nlohmann::json json = dynamicJson();
   const auto isRight = [](const nlohmann::json& radiance, const std::string& what) {
     ASSERT_EQ(radiance.size(), 9u) << what;
     for (std::size_t k = 0; k < 9; ++k) {
@@ -175,7 +176,7 @@ TEST_F(Motion, BenchDynamicKnowsTheStripBehindAWallThatOpens) {
       "bench dynamic wall.json --techniques direct irradiance-cache --set shadow.transport=rays --frames 9 --fps 4 "
       "--filter box --size 32x32 --reference-samples 256 --references references --out page");
   ASSERT_EQ(result.exitCode, 0) << result.err;
-  const nlohmann::json json = nlohmann::json::parse(std::ifstream(path("page/dynamic.json")));
+  const nlohmann::json json = dynamicJson();
   // Edges lie on borders of pixels: 2 more of the 32 columns are lit in each moment.
   const auto isRight = [](const nlohmann::json& radiance, const std::string& what) {
     ASSERT_EQ(radiance.size(), 9u) << what;
@@ -199,7 +200,7 @@ TEST_F(Motion, BenchDynamicMeasuresBudgets) {
               "/assets/cornell/moving.json' --point 'irradiance-cache cache.samples=8' --point 'irradiance-cache "
               "cache.samples=256' --frames 2 --size 16x16 --reference-samples 256 --references references --out page");
   ASSERT_EQ(result.exitCode, 0) << result.err;
-  const nlohmann::json rows = nlohmann::json::parse(std::ifstream(path("page/dynamic.json"))).at("techniques");
+  const nlohmann::json rows = dynamicJson().at("techniques");
   ASSERT_EQ(rows.size(), 2u);
   EXPECT_EQ(rows[0].at("technique"), "irradiance-cache samples=8");
   EXPECT_LT(rows[1].at("mean").get<double>(), 0.8 * rows[0].at("mean").get<double>()) << rows.dump();
@@ -231,7 +232,7 @@ TEST_F(Motion, BenchDynamicKnowsPicturesThatAreLate) {
         "--references references --out page --late " +
         std::to_string(late));
     ASSERT_EQ(result.exitCode, 0) << result.err;
-    const nlohmann::json row = nlohmann::json::parse(std::ifstream(path("page/dynamic.json"))).at("techniques")[0];
+    const nlohmann::json row = dynamicJson().at("techniques")[0];
     EXPECT_NEAR(row.at("lag").get<double>(), late, 0.051) << row.dump();
     if (late == 1) { EXPECT_NEAR(row.at("ghosts").get<double>(), 1.0, 0.05) << row.dump(); }
   }
