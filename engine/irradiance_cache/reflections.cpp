@@ -22,7 +22,8 @@ Reflections::Reflections(gl::ProgramLibrary& programs, const Scene& scene, const
 void Reflections::resize(glm::ivec2 size) { radiance_ = gl::Texture("reflections", gl::Format::rgba32f, size); }
 
 void Reflections::record(int sample, int samples, const std::function<void()>& bind) {
-  const gl::ComputePass pass("cache reflections", gl::Barrier::textureFetch | gl::Barrier::image, gl::Barrier::image);
+  // The cache stores its records before: that pass waits for the draws that read the last frame's reflections.
+  const gl::ComputePass pass("cache reflections", gl::Barrier::textureFetch);
   program_->use();
   bind();
   const int rays = (rays_ + samples - 1) / samples;
