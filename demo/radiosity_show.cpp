@@ -59,6 +59,8 @@ struct Shown {
   RadTextures textures;
 };
 
+constexpr double kRest = 0.25;  // seconds between looks at whether the program was interrupted
+
 void walkAround(Host& host, gl::ProgramLibrary& programs, Shown shown, const Camera& camera) {
   watchForInterrupt();
   auto& [triangles, display, textures] = shown;
@@ -69,29 +71,38 @@ void walkAround(Host& host, gl::ProgramLibrary& programs, Shown shown, const Cam
   host.setTitle(
       "Lucerna radiosity - 1 log, 2 linear, 3 filmic, 4 false colours, 5 bits, M mesh, B backs, I interpolated, "
       "- = constant, WASD QE and drag, Esc");
+  const auto apply = [&](char key) {
+    if (key >= '1' && key <= '5') display.mapping = static_cast<RadMapping>(key - '1');
+    if (key == 'M') display.mesh = !display.mesh;
+    if (key == 'B') display.backCorners = !display.backCorners;
+    if (key == 'I') display.shading = static_cast<RadShading>((static_cast<int>(display.shading) + 1) % 3);
+    if (display.mapping == RadMapping::bits24) display.shading = RadShading::flat;
+    const double constant = display.constant > 0.0 ? display.constant : exposureOf(triangles);
+    if (key == '=') display.constant = 1.25 * constant;
+    if (key == '-') display.constant = constant / 1.25;
+  };
   auto frameStart = Clock::now();
+  double waits = 0.0;
   while (!interrupted()) {
-    const HostInput input = host.poll();
-    if (input.closeRequested || input.pressed.find('\x1b') != std::string::npos) return;
+    host.pump(waits);
+    if (host.input().closes() || host.input().takeEscape()) return;
+    if (waits > 0.0 && !host.input().waits()) continue;
+    const double dt = waits > 0.0 ? 0.0 : secondsSince(frameStart);
+    frameStart = Clock::now();
     bool changed = host.framebufferSize() != size;
     if (changed) view = std::make_unique<RadView>(programs, size = host.framebufferSize());
-    for (const char key : input.pressed) {
-      changed = true;
-      if (key >= '1' && key <= '5') display.mapping = static_cast<RadMapping>(key - '1');
-      if (key == 'M') display.mesh = !display.mesh;
-      if (key == 'B') display.backCorners = !display.backCorners;
-      if (key == 'I') display.shading = static_cast<RadShading>((static_cast<int>(display.shading) + 1) % 3);
-      if (display.mapping == RadMapping::bits24) display.shading = RadShading::flat;
-      const double constant = display.constant > 0.0 ? display.constant : exposureOf(triangles);
-      if (key == '=') display.constant = 1.25 * constant;
-      if (key == '-') display.constant = constant / 1.25;
-    }
-    if (changed) view->show(triangles, display, textures);
-    const double dt = secondsSince(frameStart);
-    frameStart = Clock::now();
+    HostInput input;
+    do {
+      input = host.input().take();
+      for (const char key : input.pressed) apply(key);
+      changed = changed || !input.pressed.empty();
+      freeCamera.look(input);
+    } while (host.input().waits());
     freeCamera.move(input, std::min(dt, 0.1));
+    if (changed) view->show(triangles, display, textures);
     view->record(freeCamera.camera());
     host.present(view->framebuffer().id(), size);
+    waits = input.move == glm::dvec3(0.0) ? kRest : 0.0;  // nothing moves by itself
   }
 }
 

@@ -224,9 +224,9 @@ int watch(const LabOptions& options, const Lab& lab) {
       }
     }
     if (size.x > 0) host->present(framebuffer.id(), size);
-    const HostInput input = host->poll();
-    if (input.closeRequested || input.pressed.find('\x1b') != std::string::npos) break;
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    host->pump(0.1);
+    if (host->input().closes() || host->input().takeEscape()) break;
+    while (host->input().waits()) host->input().take();
   }
   return 0;
 }

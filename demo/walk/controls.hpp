@@ -41,6 +41,7 @@ bool menu(Ui& ui, const char* label, int& chosen, const Names& names) {
     ui.note(label);
     return false;
   }
+  if (ui.escapes()) ImGui::CloseCurrentPopup();
   for (int i = 0; i < static_cast<int>(std::size(names)); ++i) {
     const std::string name(names[static_cast<std::size_t>(i)]);
     if (ImGui::Selectable(name.c_str(), i == chosen)) {

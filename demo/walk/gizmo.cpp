@@ -51,7 +51,7 @@ bool Gizmo::take(Scene& scene, const Screen& screen, const glm::vec2& cursor, bo
         const float distance = distanceToSegment(cursor, *from, *to);
         if (distance >= nearest) continue;
         nearest = distance;
-        grip_ = Grip{i, axis, cursor, 0.0};
+        grip_ = Grip{i, axis, cursor, *lamps[i]};
       }
   }
   heldBefore_ = held;
@@ -61,18 +61,16 @@ bool Gizmo::take(Scene& scene, const Screen& screen, const glm::vec2& cursor, bo
   }
   // The lamp follows the cursor along the projected axis: the point on the axis whose projection is nearest to the
   // lamp's projection plus the cursor's drag.
-  glm::dvec3& place = *lamps[grip_->lamp];
   const glm::dvec3 axis = axisOf(grip_->axis);
-  if (const auto from = screen.at(place), to = screen.at(place + lengthOf(scene) * axis); held && from && to) {
+  if (const auto from = screen.at(grip_->place), to = screen.at(grip_->place + lengthOf(scene) * axis);
+      held && from && to) {
     const glm::vec2 along = *to - *from;
     const float pixels2 = glm::dot(along, along);
     if (pixels2 > 1.0f)
-      grip_->distance = lengthOf(scene) * static_cast<double>(glm::dot(cursor - grip_->start, along) / pixels2);
+      *lamps[grip_->lamp] =
+          grip_->place + lengthOf(scene) * static_cast<double>(glm::dot(cursor - grip_->start, along) / pixels2) * axis;
   }
-  if (held) return true;
-  moved_ = grip_->distance != 0.0;
-  place += grip_->distance * axis;
-  grip_.reset();
+  if (!held) grip_.reset();
   return true;
 }
 
@@ -82,8 +80,7 @@ std::vector<gl::Lines::Line> Gizmo::lines(const Scene& scene, const glm::dvec3& 
   for (const SpotLight& light : scene.spots) places.push_back(light.position);
   for (const PointLight& light : scene.points) places.push_back(light.position);
   for (std::size_t i = 0; i < places.size(); ++i) {
-    glm::dvec3 place = places[i];
-    if (grip_ && grip_->lamp == i) place += grip_->distance * axisOf(grip_->axis);
+    const glm::dvec3& place = places[i];
     for (int axis = 0; axis < 3; ++axis) {
       glm::vec4 color(0.25f, 0.25f, 0.25f, 1.0f);
       color[axis] = 1.0f;

@@ -1,5 +1,4 @@
-// Moves lamps in the picture: three axes at each lamp, dragged one at a time. The change takes effect on release, like
-// a slider's.
+// Moves lamps in the picture: three axes at each lamp, dragged one at a time.
 #pragma once
 
 #include "gl/lines.hpp"
@@ -8,7 +7,6 @@
 #include <glm/glm.hpp>
 
 #include <optional>
-#include <utility>
 #include <vector>
 
 namespace lucerna::demo {
@@ -25,8 +23,6 @@ class Gizmo {
   };
   /// Receives the left button and the cursor before anything else. True: the gizmo uses them.
   bool take(Scene& scene, const Screen& screen, const glm::vec2& cursor, bool held);
-  /// Whether a lamp was moved and released since the last call.
-  bool takeMoved() { return std::exchange(moved_, false); }
   std::vector<gl::Lines::Line> lines(const Scene& scene, const glm::dvec3& origin) const;
 
  private:
@@ -34,10 +30,10 @@ class Gizmo {
     std::size_t lamp = 0;  ///< spots, then points
     int axis = 0;
     glm::vec2 start{0.0f};  ///< cursor
-    double distance = 0.0;  ///< dragged, scene units
+    glm::dvec3 place{0.0};  ///< of the lamp, before
   };
   std::optional<Grip> grip_;
-  bool heldBefore_ = false, moved_ = false;
+  bool heldBefore_ = false;
 };
 
 }  // namespace lucerna::demo

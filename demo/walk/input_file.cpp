@@ -174,7 +174,7 @@ void InputPlayer::touch(Ui* ui) {
   touchStep_ = 0;
 }
 
-HostInput InputPlayer::next(Ui* ui) {
+void InputPlayer::next(Ui* ui) {
   if (every_ || !touching_.empty()) {
     touch(ui);
   } else {
@@ -185,7 +185,6 @@ HostInput InputPlayer::next(Ui* ui) {
     }
   }
   ++frame_;
-  return state_.take();
 }
 
 }  // namespace lucerna::demo

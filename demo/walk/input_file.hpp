@@ -34,9 +34,10 @@ class InputPlayer {
   /// Throws Error(badInput) naming file and line.
   explicit InputPlayer(const std::filesystem::path& file);
 
-  /// The input of the next frame. `ui` finds controls by name; throws Error(badInput) if one does not appear within
-  /// kPatience frames.
-  HostInput next(Ui* ui);
+  /// Queues the input of the next frame. `ui` finds controls by name; throws Error(badInput) if one does not appear
+  /// within kPatience frames.
+  void next(Ui* ui);
+  InputState& input() { return state_; }
   /// The size set by `resize` in this frame.
   std::optional<glm::ivec2> takeSize() { return std::exchange(size_, std::nullopt); }
   /// The file set by `save` in this frame.

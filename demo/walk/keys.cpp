@@ -31,7 +31,8 @@ constexpr KeyBinding kKeys[] = {
     {'4', false, Action::cache, "technique irradiance-cache"},
     {'5', false, Action::radiosity, "technique radiosity"},
     {'6', false, Action::path, "the path-traced reference; as B where two pictures are shown"},
-    {'Z', true, Action::undo, "undo the last change of settings"},
+    {'Z', true, Action::undo, "undo the last change of settings or light"},
+    {'Y', true, Action::redo, "make it again; also control shift Z"},
     {key::kTab, false, Action::flicker, "switch between A and B"},
     {'X', false, Action::wipe, "A and B divided by a wipe, dragged with the right button"},
     {'B', false, Action::sideBySide, "A and B side by side"},
@@ -41,7 +42,9 @@ constexpr KeyBinding kKeys[] = {
     {'T', false, Action::liveReference, "live reference: a reference of this view while the camera rests"},
     {'I', false, Action::inspect, "what lit the pixel under the cursor"},
     {'F', false, Action::fit, "show the whole picture again, after zooming"},
-    {key::kEscape, false, Action::end, "stop the current work; otherwise quit"},
+    {'C', false, Action::orbit, "the mouse moves around what is in the middle, or looks around"},
+    {key::kEscape, false, Action::end,
+     "stop the current work, close a list, this help; otherwise quit, after a question"},
 };
 
 }  // namespace
@@ -49,7 +52,8 @@ constexpr KeyBinding kKeys[] = {
 std::span<const KeyBinding> allKeys() { return kKeys; }
 
 std::optional<Action> actionOf(const KeyEvent& event) {
-  if (!event.down || event.repeat || event.alt) return {};
+  if (!event.down || event.alt) return {};
+  if (event.key == 'Z' && event.control && event.shift) return Action::redo;
   for (const KeyBinding& binding : kKeys)
     if (binding.key == event.key && binding.control == event.control) return binding.action;
   return {};
@@ -61,10 +65,10 @@ std::string keysHelp() {
   std::string text = "Keys in the window:\n";
   for (const KeyBinding& binding : kKeys) text += fmt::format("  {:<20} {}\n", nameOf(binding), binding.meaning);
   text += fmt::format("  {:<20} {}\n", "W A S D Q E", "move; with shift four times as fast");
-  text += fmt::format("  {:<20} {}\n", "left button", "look around by dragging");
+  text += fmt::format("  {:<20} {}\n", "left button", "look around by dragging; around (C): orbit, with shift pan");
   text += fmt::format("  {:<20} {}\n", "right button", "draw the wipe");
-  text += fmt::format("  {:<20} {}\n", "middle button", "move the zoomed picture");
-  text += fmt::format("  {:<20} {}\n", "wheel", "zoom into the picture");
+  text += fmt::format("  {:<20} {}\n", "middle button", "move the zoomed picture; around (C): pan");
+  text += fmt::format("  {:<20} {}\n", "wheel", "zoom into the picture; around (C): closer, farther");
   text += fmt::format("  {:<20} {}\n", "drop a file", "load a scene, or a picture to compare with");
   return text;
 }

@@ -35,6 +35,7 @@ enum class Action {
   radiosity,
   path,
   undo,
+  redo,
   flicker,
   wipe,
   sideBySide,
@@ -44,6 +45,7 @@ enum class Action {
   liveReference,
   inspect,
   fit,
+  orbit,
 };
 
 struct KeyBinding {

@@ -15,9 +15,7 @@ void Overlay::draw(const Frame& frame) {
 }
 
 bool Overlay::drags(glm::vec2 cursor, bool isPressed) {
-  if (!state_.movesLamps || !screen_ || !gizmo_.take(*state_.scene, *screen_, cursor, isPressed)) return false;
-  if (gizmo_.takeMoved()) ++state_.sceneVersion;
-  return true;
+  return state_.movesLamps && screen_ && gizmo_.take(*state_.scene, *screen_, cursor, isPressed);
 }
 
 // Rebuilt when the camera or their source has changed.

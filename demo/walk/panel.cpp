@@ -95,6 +95,8 @@ void showCamera(Ui& ui, WalkState& s, Host& host) {
   float speed = static_cast<float>(s.camera->speed());
   const float span = static_cast<float>(std::max(glm::length(s.scene->bounds.extent()), 1e-9));
   if (slider(ui, "speed", speed, 1e-4f * span, span, "%.3g units/s", true)) s.camera->setSpeed(speed);
+  checkbox(ui, "around what is in the middle", s.orbits);
+  explain("Left button: orbits; with shift, or the middle button: pans; wheel: closer and farther. Key C.");
   if (button(ui, "frame the scene")) frameScene(s);
   explain("Moves back along the line of sight until the whole scene is in view.");
   ImGui::SameLine();
@@ -125,9 +127,7 @@ void showCamera(Ui& ui, WalkState& s, Host& host) {
   (void)host;
 }
 
-/// Returns whether it was changed.
-bool showSun(Ui& ui, DirectionalLight& sun) {
-  bool changed = false;
+void showSun(Ui& ui, DirectionalLight& sun) {
   const glm::dvec3 to = -sun.direction;
   float height = static_cast<float>(glm::degrees(std::asin(std::clamp(to.y, -1.0, 1.0))));
   float azimuth = static_cast<float>(glm::degrees(std::atan2(to.x, -to.z)));
@@ -138,17 +138,12 @@ bool showSun(Ui& ui, DirectionalLight& sun) {
     const double h = glm::radians(std::clamp(static_cast<double>(height), 0.5, 89.9)),
                  a = glm::radians(static_cast<double>(azimuth));
     sun.direction = -glm::dvec3(std::cos(h) * std::sin(a), std::sin(h), -std::cos(h) * std::cos(a));
-    changed = true;
   }
   float strength = std::max({sun.irradiance.x, sun.irradiance.y, sun.irradiance.z});
   if (strength > 0.0f) {
     float asked = strength;
-    if (slider(ui, "sun irradiance", asked, 1e-3f, 1e4f, "%.4g W/unit^2", true)) {
-      sun.irradiance *= asked / strength;
-      changed = true;
-    }
+    if (slider(ui, "sun irradiance", asked, 1e-3f, 1e4f, "%.4g W/unit^2", true)) sun.irradiance *= asked / strength;
   }
-  return changed;
 }
 
 void showLight(Ui& ui, WalkState& s) {
@@ -161,8 +156,7 @@ void showLight(Ui& ui, WalkState& s) {
   ImGui::SameLine();
   if (button(ui, "meter once")) s.meterWanted = true;
   Scene& scene = *s.scene;
-  bool changed = false;
-  if (scene.sun) changed = showSun(ui, *scene.sun);
+  if (scene.sun) showSun(ui, *scene.sun);
   const auto lamp = [&](const std::string& name, glm::vec3& intensity, glm::dvec3& position) {
     ImGui::PushID(name.c_str());
     line(name);
@@ -172,24 +166,18 @@ void showLight(Ui& ui, WalkState& s) {
       const bool moved =
           ImGui::SliderFloat("intensity", &asked, 1e-4f, 1e5f, "%.4g W/sr", ImGuiSliderFlags_Logarithmic);
       ui.note(name + " intensity");
-      if (moved) {
-        intensity *= asked / strength;
-        changed = true;
-      }
+      if (moved) intensity *= asked / strength;
     }
     glm::vec3 place(position);
     const float step = 1e-3f * static_cast<float>(std::max(glm::length(scene.bounds.extent()), 1e-9));
     const bool moved = ImGui::DragFloat3("position", &place.x, step);
     ui.note(name + " position");
-    if (moved) {
-      position = glm::dvec3(place);
-      changed = true;
-    }
+    if (moved) position = glm::dvec3(place);
     ImGui::PopID();
   };
   if (!scene.spots.empty() || !scene.points.empty()) {
     checkbox(ui, "move lamps in the picture", s.movesLamps);
-    explain("Each lamp has three axes: drag it along one. The light is updated when the button is released.");
+    explain("Each lamp has three axes: drag it along one.");
   }
   for (std::size_t i = 0; i < scene.spots.size() && i < 16; ++i)
     lamp(fmt::format("spot {}", i + 1), scene.spots[i].intensity, scene.spots[i].position);
@@ -197,25 +185,16 @@ void showLight(Ui& ui, WalkState& s) {
     lamp(fmt::format("point {}", i + 1), scene.points[i].intensity, scene.points[i].position);
   const bool shines = std::any_of(s.materialsAsLoaded.begin(), s.materialsAsLoaded.end(),
                                   [](const Material& m) { return m.emission != glm::vec3(0.0f); });
-  if (shines && slider(ui, "emissive surfaces", s.emissionFactor, 0.01f, 100.0f, "%.3g x", true)) {
-    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
-      scene.materials[i].emission = s.emissionFactor * s.materialsAsLoaded[i].emission;
-      scene.materials[i].emissionScale = s.emissionFactor * s.materialsAsLoaded[i].emissionScale;
-    }
-    changed = true;
-  }
+  if (float factor = s.emissionFactor; shines && slider(ui, "emissive surfaces", factor, 0.01f, 100.0f, "%.3g x", true))
+    setEmission(s, factor);
   if (scene.environment) {
     float strength =
         std::max({scene.environment->radiance.x, scene.environment->radiance.y, scene.environment->radiance.z});
     if (strength > 0.0f) {
       float asked = strength;
-      if (slider(ui, "sky", asked, 1e-4f, 1e4f, "%.4g x", true)) {
-        scene.environment->radiance *= asked / strength;
-        changed = true;
-      }
+      if (slider(ui, "sky", asked, 1e-4f, 1e4f, "%.4g x", true)) scene.environment->radiance *= asked / strength;
     }
   }
-  if (changed) ++s.sceneVersion;
 }
 
 void showSide(Ui& ui, WalkState& s, int index) {
@@ -511,6 +490,8 @@ void showRecord(Ui& ui, WalkState& s, Host& host) {
   ImGui::SliderInt("frames a second", &limit, 0, 240, limit == 0 ? "no limit" : "%d at most");
   ui.note("frames a second");
   s.frameLimit = limit;
+  checkbox(ui, "draw at rest", s.drawsAtRest);
+  explain("A picture that has converged is not drawn again, and costs nothing. On: it is, so that timings go on.");
   slider(ui, "render scale", s.renderScale, 0.25f, 2.0f, "%.2f x");
   explain(
       "Size of the computed picture relative to the window's, per side. 2: four samples per pixel, averaged after the "
@@ -571,6 +552,23 @@ void Panel::showHelp(Ui& ui, WalkState& s) {
   if (ImGui::Button("close")) s.help = false;
   ui.section("Keys");
   ui.note("close");
+  ui.section("");
+  ImGui::End();
+}
+
+void Panel::showQuestion(Ui& ui, WalkState& s) {
+  const ImVec2 screen = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({0.5f * screen.x, 0.5f * screen.y}, ImGuiCond_Always, {0.5f, 0.5f});
+  ImGui::SetNextWindowBgAlpha(1.0f);
+  ImGui::SetNextWindowFocus();
+  ImGui::Begin("##question", nullptr,
+               ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
+  ui.noteWindow();
+  line(s.recording.empty() ? "Quit?" : "Quit, and end the video?");
+  ui.section("Question");
+  if (button(ui, "quit (Enter)")) s.endWanted = true;
+  ImGui::SameLine();
+  if (button(ui, "stay (Escape)")) s.asksToEnd = false;
   ui.section("");
   ImGui::End();
 }

@@ -14,6 +14,8 @@ class Panel {
   static int widthOf(float scale);
   /// F1.
   static void showHelp(Ui& ui, WalkState& state);
+  /// Whether to quit.
+  static void showQuestion(Ui& ui, WalkState& state);
   /// One line at the bottom: the current work, or the last message.
   static void showMessage(const WalkState& state, const std::string& work, double share);
   /// Values under the magnifier, next to the cursor.

@@ -12,8 +12,48 @@ namespace lucerna::demo {
 
 namespace {
 
-/// Quoted for a shell.
+template <class Lamp>
+bool sameLamps(const std::vector<Lamp>& a, const std::vector<Lamp>& b) {
+  return std::ranges::equal(
+      a, b, [](const Lamp& x, const Lamp& y) { return x.position == y.position && x.intensity == y.intensity; });
+}
+
 }  // namespace
+
+LightState lightsOf(const WalkState& state) {
+  const Scene& scene = *state.scene;
+  return {scene.sun, scene.spots, scene.points, scene.environment ? scene.environment->radiance : glm::vec3(0.0f),
+          state.emissionFactor};
+}
+
+void setLights(WalkState& state, const LightState& lights) {
+  Scene& scene = *state.scene;
+  scene.sun = lights.sun;
+  scene.spots = lights.spots;
+  scene.points = lights.points;
+  if (scene.environment) scene.environment->radiance = lights.sky;
+  setEmission(state, lights.emission);
+}
+
+void setEmission(WalkState& state, float factor) {
+  state.emissionFactor = factor;
+  for (std::size_t i = 0; i < state.scene->materials.size(); ++i) {
+    const Material& loaded = state.materialsAsLoaded[i];
+    state.scene->materials[i].emission = factor * loaded.emission;
+    state.scene->materials[i].emissionScale = factor * loaded.emissionScale;
+  }
+}
+
+SceneChange changeOf(const LightState& before, const LightState& now) {
+  SceneChange change;
+  change.sun =
+      before.sun.has_value() != now.sun.has_value() ||
+      (now.sun && (before.sun->direction != now.sun->direction || before.sun->irradiance != now.sun->irradiance));
+  change.lamps = !sameLamps(before.spots, now.spots) || !sameLamps(before.points, now.points);
+  change.environment = before.sky != now.sky;
+  change.materials = before.emission != now.emission;
+  return change;
+}
 
 std::string textOf(const PictureOptions& o) {
   return fmt::format("{} {} {} | {} | {}", o.technique, o.component, o.fidelity, fmt::join(o.deviations, " "),

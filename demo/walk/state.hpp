@@ -5,6 +5,7 @@
 #include "shared/commands.hpp"
 #include "shared/glyphs.hpp"
 #include "scene/key_frames.hpp"
+#include "scene/motion.hpp"
 #include "walk/compare.hpp"
 #include "walk/free_camera.hpp"
 #include "walk/scene_views.hpp"
@@ -58,6 +59,21 @@ struct TimeState {
   double seconds = 0.0, speed = 1.0;
 };
 
+/// Lights of a scene, as far as the panel changes them.
+struct LightState {
+  std::optional<DirectionalLight> sun;
+  std::vector<SpotLight> spots;
+  std::vector<PointLight> points;
+  glm::vec3 sky{0.0f};  ///< factor of the environment
+  float emission = 1.0f;  ///< factor of all emissive materials
+};
+
+/// What undo and redo step through.
+struct Edit {
+  std::array<PictureOptions, 2> options;
+  LightState lights;
+};
+
 struct WalkState {
   // Scene
   std::unique_ptr<Scene> scene;
@@ -74,6 +90,7 @@ struct WalkState {
   // Camera
   PathState path;
   std::optional<FreeCamera> camera;
+  bool orbits = false;  ///< the mouse moves around a point, not the view
   std::vector<KeyFrame> keyFrames;  ///< recorded
   std::string keyFramesFile = "key_frames.txt";
 
@@ -81,7 +98,7 @@ struct WalkState {
   std::array<SideState, 2> sides;
   int shown = 0;  ///< visible side, if the layout is one picture
   int edited = 0;  ///< side edited by the settings section
-  std::vector<std::array<PictureOptions, 2>> undo;
+  std::vector<Edit> undo, redo;  ///< the latest last
   std::string settingsFilter;
 
   // Comparison
@@ -111,6 +128,8 @@ struct WalkState {
 
   // Window
   bool panel = true, help = false, hint = true;
+  bool asksToEnd = false;
+  bool drawsAtRest = false;  ///< also when nothing changes any more, for timings
   bool swapAtRefresh = true;
   int frameLimit = 0;  ///< frames per second; 0: none
   float budgetMs = 16.7f;
@@ -149,6 +168,12 @@ struct WalkState {
   bool isVisible(int side) const { return layout != Layout::one || side == shown; }
 };
 
+LightState lightsOf(const WalkState& state);
+void setLights(WalkState& state, const LightState& lights);
+/// Scales all emissive materials, relative to how they were loaded.
+void setEmission(WalkState& state, float factor);
+/// What differs between the lights of one scene.
+SceneChange changeOf(const LightState& before, const LightState& now);
 /// The options as text: equal texts give equal pictures.
 std::string textOf(const PictureOptions& options);
 /// Switches to another technique with its defaults: settings and deviations of the previous one do not apply.

@@ -145,6 +145,7 @@ void Ui::begin(const HostInput& input, glm::ivec2 size, double seconds) {
   io.AddInputCharactersUTF8(input.text.c_str());
   places_.clear();
   held_ = input.buttons[0] || input.buttons[1] || input.buttons[2];
+  escapes_ = std::ranges::any_of(input.keys, [](const KeyEvent& e) { return e.key == key::kEscape && e.down; });
   ImGui::NewFrame();
 }
 
@@ -156,7 +157,7 @@ void Ui::noteWindow() {
 // A button belongs to where it went down, until it is let go; an open menu takes every click.
 bool Ui::wantsMouse(const HostInput& input) const {
   if (held_) return ImGui::GetIO().WantCaptureMouse;
-  if (ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup)) return true;
+  if (showsList()) return true;
   const glm::vec2 cursor(input.cursor);
   return std::ranges::any_of(windows_, [&](const std::array<glm::vec2, 2>& window) {
     return glm::all(glm::greaterThanEqual(cursor, window[0])) && glm::all(glm::lessThan(cursor, window[1]));

@@ -40,6 +40,10 @@ class Ui {
   /// ImGui itself knows only after the frame has begun.
   bool wantsMouse(const HostInput& input) const;
   bool wantsKeyboard() const { return ImGui::GetIO().WantTextInput; }
+  /// Whether a menu's list is open.
+  bool showsList() const { return ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup); }
+  /// Whether Escape went down in this frame's input.
+  bool escapes() const { return escapes_; }
   float scale() const { return scale_; }
   std::size_t gpuBytes() const { return overlay_.gpuBytes() + panelFont_.bytes() + noteFont_.bytes(); }
 
@@ -71,6 +75,7 @@ class Ui {
   std::string section_, wanted_;
   std::vector<std::array<glm::vec2, 2>> windows_;  ///< lower and upper corner
   bool held_ = false;  ///< a mouse button was held in the last frame
+  bool escapes_ = false;
   std::map<std::string, Place> places_;
   std::set<std::string> labels_;
   std::string clipboard_;

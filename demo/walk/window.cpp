@@ -33,6 +33,9 @@ constexpr double kPlayedFrame =
     1.0 / 60.0;  // seconds per frame of recorded input, so that the walk is the same on every machine
 constexpr double kMessageSeconds = 8.0, kHintSeconds = 8.0;
 constexpr double kLongestStep = 0.25;  // seconds by which the path advances in one frame
+constexpr double kRest = 0.25;  // seconds between looks at whether the program was interrupted, while nothing changes
+constexpr double kSmoothSeconds = 0.3;  // slower changes of light wait until the mouse button is released
+constexpr std::size_t kMostEdits = 100;
 constexpr int kStillFrames = 3;  // still frames before the reference of a view is started
 constexpr std::size_t kPlotFrames = 240;
 
@@ -67,53 +70,44 @@ WalkWindow::~WalkWindow() {
 // ---------------------------------------------------------------------------------------------------- input
 
 bool WalkWindow::takeInput() {
+  host_.pump();  // the system must see that the window responds
   if (player_) {
     if (player_->done() && options_.frames == 0) return false;
+    while (host_.input().waits()) host_.input().take();
     if (!ui_) ui_.emplace(programs_, host_, host_.contentScale());
-    input_ = player_->next(&*ui_);
+    player_->next(&*ui_);
     if (const auto size = player_->takeSize()) {
       playedSize_ = *size;
       host_.setWindowSize(*size);
     }
-    host_.poll();  // the system must see that the window responds
-  } else {
-    input_ = host_.poll();
   }
+  InputState& source = player_ ? player_->input() : host_.input();
+  if (source.waits()) quiet_ = 0;
+  walking_ = {};
+  for (bool more = true; more;) {
+    input_ = source.take();
+    if (!takeStep()) return false;
+    more = source.waits();
+    if (!more || !ui_ || !drawsUi()) continue;
+    buildUi(0.0);
+    ui_->drop();
+  }
+  return true;
+}
+
+bool WalkWindow::takeStep() {
   if (input_.closeRequested || interrupted()) return false;
   const bool typing = ui_ && ui_->wantsKeyboard(), pointing = ui_ && drawsUi() && ui_->wantsMouse(input_);
-  if (typing) {
-    input_.move = glm::dvec3(0.0);
-    input_.pressed.clear();
-  }
-  if (pointing) input_.mouseDelta = glm::dvec2(0.0);
-  touched_ = touched_ || !input_.pressed.empty() || input_.buttons[0] || input_.buttons[1] || !input_.dropped.empty();
+  const bool listIsOpen = ui_ && ui_->showsList();
+  if (typing) input_.move = glm::dvec3(0.0);
+  touched_ = touched_ || !input_.keys.empty() || input_.buttons[0] || input_.buttons[1] || !input_.dropped.empty();
   for (const KeyEvent& event : input_.keys) {
-    touched_ = true;
+    if (state_.asksToEnd && event.down && event.key == key::kEnter) state_.endWanted = true;
     const auto action = actionOf(event);
-    if (action && (!typing || *action == Action::help || *action == Action::panel)) act(*action);
+    if (!action || (listIsOpen && *action == Action::end)) continue;  // Escape closes the list
+    if (!typing || *action == Action::help || *action == Action::panel) act(*action);
   }
-  if (!pointing) {
-    const glm::vec2 pixels(glm::max(view_, glm::ivec2(1)));
-    if (input_.buttons[static_cast<std::size_t>(MouseButton::right)] && state_.layout == Layout::wipe)
-      state_.split = std::clamp(static_cast<float>(input_.cursor.x) / pixels.x, 0.0f, 1.0f);
-    if (input_.wheel.y != 0.0)
-      state_.zoom = std::clamp(state_.zoom * static_cast<float>(std::exp2(0.25 * input_.wheel.y)), 1.0f, 64.0f);
-    if (state_.zoom == 1.0f) state_.centre = glm::vec2(0.5f);
-    if (input_.buttons[static_cast<std::size_t>(MouseButton::middle)])
-      state_.centre = glm::clamp(
-          state_.centre - glm::vec2(1.0f, -1.0f) * glm::vec2(input_.cursor - cursorBefore_) / pixels / state_.zoom,
-          0.0f, 1.0f);
-  }
-  const bool left = input_.buttons[static_cast<std::size_t>(MouseButton::left)];
-  if (!pointing && overlay_.drags(glm::vec2(input_.cursor), left)) {
-    input_.mouseDelta = glm::dvec2(0.0);
-    changed();
-  } else if (state_.inspectsByClick && !pointing) {
-    if (left && !leftBefore_) state_.inspectedPlace = input_.cursor;
-    input_.mouseDelta = glm::dvec2(0.0);
-  }
-  leftBefore_ = left;
-  cursorBefore_ = input_.cursor;
+  steer(pointing);
   for (const fs::path& file : input_.dropped) {
     if (isPicture(file)) {
       SideState& b = state_.sides[1];
@@ -125,6 +119,71 @@ bool WalkWindow::takeInput() {
     }
   }
   return !state_.endWanted && !stop_;
+}
+
+/// What the mouse does in the picture, and the keys that move.
+void WalkWindow::steer(bool pointing) {
+  const auto holds = [&](MouseButton button) { return input_.buttons[static_cast<std::size_t>(button)]; };
+  const bool left = holds(MouseButton::left);
+  if (input_.move != glm::dvec3(0.0)) {
+    walking_.move = input_.move;
+    walking_.fast = input_.fast;
+    state_.path.follows = false;
+  }
+  if (!left && !holds(MouseButton::middle)) orbitDistance_.reset();
+  if (pointing) {
+    leftBefore_ = left;
+    cursorBefore_ = input_.cursor;
+    return;
+  }
+  const glm::vec2 pixels(glm::max(view_, glm::ivec2(1)));
+  if (holds(MouseButton::right) && state_.layout == Layout::wipe)
+    state_.split = std::clamp(static_cast<float>(input_.cursor.x) / pixels.x, 0.0f, 1.0f);
+  if (overlay_.drags(glm::vec2(input_.cursor), left)) {
+    changed();
+  } else if (state_.inspectsByClick) {
+    if (left && !leftBefore_) state_.inspectedPlace = input_.cursor;
+  } else if (state_.orbits) {
+    if (input_.mouseDelta != glm::dvec2(0.0) || input_.wheel.y != 0.0) {
+      if (!orbitDistance_) orbitDistance_ = distanceOfCentre();
+      state_.path.follows = false;
+      state_.camera->orbit(input_, *orbitDistance_, view_.y);
+      if (input_.wheel.y != 0.0) orbitDistance_.reset();
+    }
+  } else if (left && input_.mouseDelta != glm::dvec2(0.0)) {
+    state_.path.follows = false;
+    state_.camera->look(input_);
+  }
+  if (!state_.orbits) {
+    if (input_.wheel.y != 0.0)
+      state_.zoom = std::clamp(state_.zoom * static_cast<float>(std::exp2(0.25 * input_.wheel.y)), 1.0f, 64.0f);
+    if (holds(MouseButton::middle))
+      state_.centre = glm::clamp(
+          state_.centre - glm::vec2(1.0f, -1.0f) * glm::vec2(input_.cursor - cursorBefore_) / pixels / state_.zoom,
+          0.0f, 1.0f);
+  }
+  if (state_.zoom == 1.0f) state_.centre = glm::vec2(0.5f);
+  leftBefore_ = left;
+  cursorBefore_ = input_.cursor;
+}
+
+/// How far the surface in the middle of the picture is; where there is none, the middle of the scene.
+double WalkWindow::distanceOfCentre() const {
+  const Camera& camera = state_.camera->camera();
+  const double radius = 0.5 * std::max(glm::length(state_.scene->bounds.extent()), 1e-9);
+  const double toCentre = glm::dot(state_.scene->bounds.centre() - camera.position, camera.direction);
+  const double usual = toCentre > 1e-3 * radius ? toCentre : radius;
+  const SideState& side = state_.sides[static_cast<std::size_t>(state_.shown)];
+  if (!side.renderer || !side.renderer->depth()) return usual;
+  const gl::Texture& depth = *side.renderer->depth();
+  const gl::Texture one("pixel", depth.format(), glm::ivec2(1));
+  gl::copyTexels(depth, depth.size2d() / 2, one, {0, 0}, {1, 1});
+  const float z = one.readDepth().front();
+  if (z >= 1.0f) return usual;
+  const gl::Lines::View view = side.renderer->linesView(camera, state_.scene->bounds);
+  const glm::dvec4 at = glm::inverse(glm::dmat4(view.clipFromWorld)) * glm::dvec4(0.0, 0.0, 2.0 * z - 1.0, 1.0);
+  const double distance = glm::dot(glm::dvec3(at) / at.w + side.renderer->origin() - camera.position, camera.direction);
+  return std::isfinite(distance) && distance > 0.0 ? distance : usual;
 }
 
 void WalkWindow::act(Action action) {
@@ -141,7 +200,10 @@ void WalkWindow::act(Action action) {
     case Action::shot: s.shotWanted = true; break;
     case Action::video: s.records = !s.records; break;
     case Action::capture: s.captureWanted = true; break;
-    case Action::end: s.endWanted = true; break;
+    case Action::end:
+      if (s.help) s.help = false;
+      else s.asksToEnd = !s.asksToEnd;
+      break;
     case Action::pause: s.path.paused = !s.path.paused; break;
     case Action::hold:
       s.time.held = !s.time.held;
@@ -170,11 +232,11 @@ void WalkWindow::act(Action action) {
       s.sides[static_cast<std::size_t>(s.layout == Layout::one ? s.shown : 1)].shows = Shows::reference;
       s.liveReferenceOn = true;
       break;
-    case Action::undo:
-      if (s.undo.empty()) break;
-      for (std::size_t i = 0; i < 2; ++i) s.sides[i].options = s.undo.back()[i];
-      s.undo.pop_back();
-      s.say("settings as before");
+    case Action::undo: stepThrough(s.undo, s.redo); break;
+    case Action::redo: stepThrough(s.redo, s.undo); break;
+    case Action::orbit:
+      s.orbits = !s.orbits;
+      s.say(s.orbits ? "the mouse moves around what is in the middle" : "the mouse looks around");
       break;
     case Action::flicker: s.shown = 1 - s.shown; break;
     case Action::wipe: s.layout = s.layout == Layout::wipe ? Layout::one : Layout::wipe; break;
@@ -197,6 +259,32 @@ void WalkWindow::act(Action action) {
   }
 }
 
+void WalkWindow::stepThrough(std::vector<Edit>& from, std::vector<Edit>& to) {
+  noteEdits();
+  if (from.empty()) return;
+  const std::string lights = changeOf(lastEdit_.lights, from.back().lights).any() ? "light" : "settings";
+  to.push_back(std::exchange(lastEdit_, from.back()));
+  from.pop_back();
+  for (std::size_t i = 0; i < 2; ++i) state_.sides[i].options = lastEdit_.options[i];
+  setLights(state_, lastEdit_.lights);
+  state_.say(fmt::format("{} {}", lights, &from == &state_.undo ? "as before" : "made again"));
+}
+
+/// Finds what has been edited since, once it is done: a drag is one edit. Curves move lights of their own.
+void WalkWindow::noteEdits() {
+  if (input_.buttons != std::array<bool, 3>{} || !state_.sides[0].failedAs.empty() || !state_.sides[1].failedAs.empty())
+    return;
+  Edit now{{state_.sides[0].options, state_.sides[1].options}, lightsOf(state_)};
+  if (state_.scene->motion) now.lights = lastEdit_.lights;
+  const bool same = textOf(now.options[0]) == textOf(lastEdit_.options[0]) &&
+                    textOf(now.options[1]) == textOf(lastEdit_.options[1]) &&
+                    !changeOf(lastEdit_.lights, now.lights).any();
+  if (same) return;
+  state_.undo.push_back(std::exchange(lastEdit_, now));
+  if (state_.undo.size() > kMostEdits) state_.undo.erase(state_.undo.begin());
+  state_.redo.clear();
+}
+
 // ---------------------------------------------------------------------------------------------------- frame steps
 
 // A scene that moves: renderers follow it, or are made anew where they cannot.
@@ -209,8 +297,25 @@ void WalkWindow::moveScene(double seconds) {
   if (time.seconds == state_.scene->time) return;
   const float exposure = state_.scene->exposure;
   const SceneChange change = poseAt(*state_.scene, time.seconds);
-  if (!change.any()) return;
+  shownLights_ = lightsOf(state_);
   if (state_.scene->exposure != exposure) state_.exposure = state_.scene->exposure;
+  follow(change);
+}
+
+/// The lights as they were set since the last frame. Whether they have changed.
+bool WalkWindow::relight() {
+  const LightState now = lightsOf(state_);
+  const SceneChange change = changeOf(shownLights_, now);
+  const bool held = input_.buttons[static_cast<std::size_t>(MouseButton::left)];
+  if (!change.any() || (held && followSeconds_ > kSmoothSeconds)) return false;
+  shownLights_ = now;
+  follow(change);
+  return true;
+}
+
+/// The scene has changed: renderers follow it, or are made anew where they cannot.
+void WalkWindow::follow(const SceneChange& change) {
+  if (!change.any()) return;
   const std::string before = fmt::format(" {}", state_.sceneVersion), now = fmt::format(" {}", ++state_.sceneVersion);
   for (SideState& side : state_.sides) {
     side.judgement.clear();
@@ -224,8 +329,6 @@ void WalkWindow::moveScene(double seconds) {
 
 void WalkWindow::moveCamera(double seconds) {
   PathState& path = state_.path;
-  const bool steers = input_.move != glm::dvec3(0.0) || input_.mouseDelta != glm::dvec2(0.0);
-  if (steers) path.follows = false;
   if (path.follows) {
     // A viewer should miss nothing of the path, however slow the frames are. A measurement needs real time.
     const bool measures = !options_.common.json.empty() && !player_;
@@ -245,7 +348,7 @@ void WalkWindow::moveCamera(double seconds) {
     }
     state_.camera->place(path.spline->view(path.first + *view));
   } else {
-    state_.camera->move(input_, std::min(seconds, 0.1));  // a slow frame must not fling the camera across the room
+    state_.camera->move(walking_, std::min(seconds, 0.1));  // a slow frame must not fling the camera across the room
   }
   if (!state_.camera->camera().seesAs(lastCamera_)) changed();
   lastCamera_ = state_.camera->camera();
@@ -276,6 +379,9 @@ void WalkWindow::loadWantedScene() {
     state_.answer.reset();
     state_.emissionFactor = 1.0f;
     state_.materialsAsLoaded = state_.scene->materials;
+    state_.undo.clear();
+    state_.redo.clear();
+    lastEdit_.lights = shownLights_ = lightsOf(state_);
     SideState& a = state_.sides[0];
     a.renderer = std::move(renderer);
     a.built = a.options;
@@ -327,13 +433,6 @@ void WalkWindow::make(SideState& side) {
     side.buildSeconds = secondsSince(start);
     side.failure.clear();
     side.failedAs.clear();
-    if (!side.builtAs.empty() && textOf(side.built) != textOf(side.options)) {
-      std::array<PictureOptions, 2> before{state_.sides[0].built, state_.sides[1].built};
-      if (state_.undo.empty() || textOf(state_.undo.back()[0]) != textOf(before[0]) ||
-          textOf(state_.undo.back()[1]) != textOf(before[1]))
-        state_.undo.push_back(before);
-      if (state_.undo.size() > 100) state_.undo.erase(state_.undo.begin());
-    }
     side.built = side.options;
     side.builtAs = wanted;
     side.settled = false;
@@ -394,7 +493,7 @@ void WalkWindow::draw() {
     SideState& side = state_.sides[static_cast<std::size_t>(i)];
     if (!state_.isVisible(i) || !side.renderer || (side.shows == Shows::picture && side.picture)) continue;
     const bool rests =
-        state_.liveReferenceOn && still_ > kStillFrames && side.settled && side.renderer->exposure() == state_.exposure;
+        !state_.drawsAtRest && still_ > kStillFrames && side.settled && side.renderer->exposure() == state_.exposure;
     if (rests) continue;
     side.renderer->setExposure(state_.exposure);
     side.renderer->render(state_.camera->camera());
@@ -563,23 +662,25 @@ glm::ivec2 WalkWindow::pictureSize() const {
   return glm::max(glm::ivec2(glm::vec2(view_) * state_.renderScale), glm::ivec2(1));
 }
 
-void WalkWindow::drawUi(const HostInput& input, double seconds, const std::string& work, double share) {
+void WalkWindow::buildUi(double seconds) {
+  ui_->begin(input_, window_, seconds);
+  ui_->beginWindows();
+  if (state_.panel) Panel::show(*ui_, state_, host_);
+  if (state_.help) Panel::showHelp(*ui_, state_);
+  if (state_.asksToEnd) Panel::showQuestion(*ui_, state_);
+  Panel::showValues(state_);
+  Panel::showMessage(state_, "", -1.0);
+}
+
+void WalkWindow::drawUi(double seconds) {
   if (!ui_) ui_.emplace(programs_, host_, host_.contentScale());
-  if (work.empty()) ui_->begin(input, window_, seconds);
-  else ui_->beginNote(window_, seconds);
-  if (work.empty()) {
-    ui_->beginWindows();
-    if (state_.panel) Panel::show(*ui_, state_, host_);
-    if (state_.help) Panel::showHelp(*ui_, state_);
-    Panel::showValues(state_);
-  }
-  Panel::showMessage(state_, work, share);
+  buildUi(seconds);
   ui_->end(pictureTarget_);
 }
 
 // Controls that recorded input uses by name must exist; apart from them, nothing invisible is built.
 bool WalkWindow::drawsUi() const {
-  return state_.panel || state_.help || state_.hint ||
+  return state_.panel || state_.help || state_.asksToEnd || state_.hint ||
          (!state_.messages.empty() && state_.messageAge < kMessageSeconds) || player_.has_value();
 }
 
@@ -587,12 +688,15 @@ void WalkWindow::breathe(const std::string& what, double share) {
   const bool measures = !options_.common.json.empty() && !player_;
   if (measures || window_.x <= 0 || secondsSince(lastBreath_) < 0.1) return;
   if (!player_) {
-    const HostInput input = host_.poll();
-    if (input.closeRequested) stop_ = true;
-    if (stop_ || interrupted() || input.pressed.find('\x1b') != std::string::npos) throw Stopped(what);
+    host_.pump();
+    if (host_.input().closes()) stop_ = true;
+    if (stop_ || interrupted() || host_.input().takeEscape()) throw Stopped(what);
     if (host_.framebufferSize() != window_) return;  // the next frame handles it
   }
-  drawUi({}, 0.02, what, share);
+  if (!ui_) ui_.emplace(programs_, host_, host_.contentScale());
+  ui_->beginNote(window_, 0.02);
+  Panel::showMessage(state_, what, share);
+  ui_->end(pictureTarget_);
   host_.present(pictureTarget_.id(), window_);
   lastBreath_ = Clock::now();
 }
@@ -603,25 +707,54 @@ void WalkWindow::pace(Clock::time_point start) {
       start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1.0 / state_.frameLimit)));
 }
 
+/// Whether nothing would change by itself: the picture has converged, nothing moves, no message is about to go.
+bool WalkWindow::rests() const {
+  const bool measures = !options_.common.json.empty() || options_.frames > 0;
+  if (player_ || measures || state_.drawsAtRest || host_.kind() != HostKind::window) return false;
+  const bool isStill = still_ > kStillFrames && quiet_ > kStillFrames && allSettled();
+  const bool moves = (state_.path.follows && !state_.path.paused) || (state_.scene->motion && !state_.time.held) ||
+                     input_.move != glm::dvec3(0.0);
+  const bool works = state_.liveReferenceOn || state_.autoExposure || recorder_.isRecording() || state_.records;
+  const bool speaks = state_.hint || (!state_.messages.empty() && state_.messageAge < kMessageSeconds);
+  return isStill && !moves && !works && !speaks;
+}
+
 void WalkWindow::run() {
+  lastEdit_ = {{state_.sides[0].options, state_.sides[1].options}, lightsOf(state_)};
+  shownLights_ = lastEdit_.lights;
   const auto begin = Clock::now();
   auto frameStart = begin, titleTime = begin;
   compare_.emplace(programs_);
-  while (takeInput()) {
+  bool rested = false;
+  while (true) {
+    if (rests()) {
+      if (!rested) host_.setTitle(fmt::format("Lucerna - {} - at rest - F1 keys, F2 panel", state_.scene->name));
+      rested = true;
+      host_.pump(kRest);
+      frameStart = titleTime = Clock::now();
+      framesOfTitle_ = 0;
+      if (!host_.input().waits() && !interrupted()) continue;
+    }
+    rested = false;
+    if (!takeInput()) break;
     const auto start = Clock::now();
     const double measured = frames_ > 0 ? std::chrono::duration<double>(start - frameStart).count() : 0.0;
     const double dt = player_ ? kPlayedFrame : measured;
     frameStart = start;
     const glm::ivec2 window = host_.kind() == HostKind::window ? host_.framebufferSize() : playedSize_;
     if (window.x <= 0 || window.y <= 0) {  // minimised
-      if (!player_) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      if (!player_) host_.pump(kRest);
       ++frames_;
       continue;
     }
     resizeTo(window);
     loadWantedScene();
     moveScene(dt);
+    const auto beforeLight = Clock::now();
+    const bool relit = relight();
     makeReady();
+    if (relit) followSeconds_ = secondsSince(beforeLight);
+    noteEdits();
     if (stop_) break;
     moveCamera(dt);
     recorder_.beginCapture(frames_ == options_.capture);
@@ -630,7 +763,7 @@ void WalkWindow::run() {
     compose();
     recorder_.record(shownPicture(), dt);
     if (drawsUi()) {
-      drawUi(input_, dt, "", -1.0);
+      drawUi(dt);
       if (player_)
         if (const auto file = player_->takeSave()) writePng(*file, gl::readBitmap(picture_, window_));
       host_.present(pictureTarget_.id(), window_);
@@ -639,6 +772,7 @@ void WalkWindow::run() {
     }
     recorder_.endCapture();
     ++still_;
+    ++quiet_;
     ++frames_;
     state_.messageAge += dt;
     sinceHint_ += dt;

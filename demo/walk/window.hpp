@@ -36,8 +36,14 @@ class WalkWindow {
  private:
   // The steps of a frame, in this order.
   bool takeInput();  ///< false: the walk ends
+  bool takeStep();  ///< acts on input_; false: the walk ends
+  void steer(bool pointing);
   void act(Action action);
+  void stepThrough(std::vector<Edit>& from, std::vector<Edit>& to);
+  void noteEdits();
   void moveScene(double seconds);
+  bool relight();
+  void follow(const SceneChange& change);
   void moveCamera(double seconds);
   void loadWantedScene();
   void makeReady();
@@ -49,12 +55,15 @@ class WalkWindow {
   void readPixel(const Compare::Inputs& inputs);
   void inspectPixel(const Compare::Inputs& inputs);
   void pace(Clock::time_point start);
+  bool rests() const;
+  double distanceOfCentre() const;
 
   /// Called during long work: shows the old picture and a note of what is being done. Throws Stopped if Escape was
   /// pressed.
   void breathe(const std::string& what, double share = -1.0);
   void resizeTo(glm::ivec2 window);
-  void drawUi(const HostInput& input, double seconds, const std::string& work, double share);
+  void buildUi(double seconds);
+  void drawUi(double seconds);
   bool drawsUi() const;
   Recorder::Shown shownPicture() const { return {picture_, view_}; }
   glm::ivec2 pictureSize() const;  ///< size of the computed picture
@@ -73,7 +82,12 @@ class WalkWindow {
   std::optional<InputPlayer> player_;
   std::optional<Compare> compare_;
   std::optional<StageView> stageView_;
-  HostInput input_;
+  HostInput input_;  ///< the step that is acted on
+  HostInput walking_;  ///< keys of movement that were held in any step of this frame
+  std::optional<double> orbitDistance_;  ///< of the point that the mouse moves around, while a button is held
+  Edit lastEdit_;
+  LightState shownLights_;  ///< of the scene that renderers were last made of
+  double followSeconds_ = 0.0;  ///< that the last change of lights took to follow, or to make renderers anew
   glm::dvec2 cursorBefore_{0.0};
   bool leftBefore_ = false;  ///< the left button was held in the last frame
   glm::ivec2 window_{0}, playedSize_{0};
@@ -82,6 +96,7 @@ class WalkWindow {
   gl::Framebuffer pictureTarget_;
   Camera lastCamera_;
   int still_ = 0;  ///< frames since anything moved
+  int quiet_ = 0;  ///< frames since there was input
   bool touched_ = false;  ///< there was input, so the walk does not end by itself
   bool stop_ = false;
   bool presented_ = false;  ///< compose() presented the renderer's own picture

@@ -53,7 +53,9 @@ class Host {
   /// Shows a framebuffer's first colour attachment (top row last, as in GL) and waits for the swap. No effect
   /// off-screen.
   virtual void present(unsigned framebuffer, glm::ivec2 size) = 0;
-  virtual HostInput poll() { return {}; }
+  /// Queues what the user has done since the last call; with `seconds`, waits that long for something to happen.
+  virtual void pump([[maybe_unused]] double seconds = 0.0) {}
+  InputState& input() { return input_; }
   virtual glm::ivec2 framebufferSize() const = 0;
   virtual void setTitle(const std::string&) {}
 
@@ -75,6 +77,7 @@ class Host {
 
  protected:
   Host() = default;
+  InputState input_;
 };
 
 /// Whether OSMesa was built in and its library can be loaded.

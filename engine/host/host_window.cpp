@@ -63,10 +63,10 @@ class WindowHost final : public Host {
     glfwSwapBuffers(window_);
   }
 
-  HostInput poll() override {
-    glfwPollEvents();
+  void pump(double seconds) override {
+    if (seconds > 0.0) glfwWaitEventsTimeout(seconds);
+    else glfwPollEvents();
     if (glfwWindowShouldClose(window_)) input_.close();
-    return input_.take();
   }
 
   glm::ivec2 framebufferSize() const override {
@@ -123,9 +123,17 @@ class WindowHost final : public Host {
   static InputState& inputOf(GLFWwindow* window) {
     return static_cast<WindowHost*>(glfwGetWindowUserPointer(window))->input_;
   }
+  /// The key by what is printed on it: letters, and the punctuation that is bound to something, wherever the layout has
+  /// them. All other keys, such as digits (which some layouts reach by shift alone), by their place.
+  static int keyOf(int key, int scancode) {
+    const char* name = key >= 32 && key < 127 ? glfwGetKeyName(key, scancode) : nullptr;
+    if (!name || name[0] == 0 || name[1] != 0) return key;
+    if (name[0] >= 'a' && name[0] <= 'z') return name[0] - 'a' + 'A';
+    return name[0] == '-' || name[0] == '=' || name[0] == '[' || name[0] == ']' ? name[0] : key;
+  }
   void listen() {
-    glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int) {
-      inputOf(window).key(key, action != GLFW_RELEASE, action == GLFW_REPEAT);
+    glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int scancode, int action, int) {
+      inputOf(window).key(keyOf(key, scancode), action != GLFW_RELEASE);
     });
     glfwSetCharCallback(window_, [](GLFWwindow* window, unsigned character) { inputOf(window).text(utf8(character)); });
     glfwSetMouseButtonCallback(window_, [](GLFWwindow* window, int button, int action, int) {
@@ -142,6 +150,8 @@ class WindowHost final : public Host {
     glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** files) {
       for (int i = 0; i < count; ++i) inputOf(window).drop(files[i]);
     });
+    glfwSetWindowRefreshCallback(window_, [](GLFWwindow* window) { inputOf(window).expose(); });
+    glfwSetFramebufferSizeCallback(window_, [](GLFWwindow* window, int, int) { inputOf(window).expose(); });
     glfwSetWindowFocusCallback(window_,
                                [](GLFWwindow* window, int focused) { inputOf(window).focus(focused == GLFW_TRUE); });
   }
@@ -155,7 +165,6 @@ class WindowHost final : public Host {
 
   GLFWwindow* window_ = nullptr;
   int swapInterval_;
-  InputState input_;
   glm::ivec2 place_{0}, size_{1280, 720};  ///< the window's before full screen
 };
 

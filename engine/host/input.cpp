@@ -50,45 +50,100 @@ int key::named(std::string_view name) {
   return -1;
 }
 
-void InputState::key(int key, bool down, bool repeat) {
-  if (key < 0 || key >= key::kCount) return;
+HostInput& InputState::open(bool anew) {
+  if (steps_.empty() || anew) {
+    steps_.emplace_back();
+    noteHeld(steps_.back().input);
+  }
+  return steps_.back().input;
+}
+
+void InputState::noteHeld(HostInput& input) const {
+  const auto one = [&](int key) { return held(key) ? 1.0 : 0.0; };
+  input.cursor = cursor_;
+  input.buttons = buttons_;
+  input.focused = focused_;
+  input.move = {one('D') - one('A'), one('E') - one('Q'), one('W') - one('S')};
+  input.fast = held(key::kLeftShift) || held(key::kRightShift);
+}
+
+void InputState::key(int key, bool down) {
+  if (key < 0 || key >= key::kCount || held(key) == down) return;
+  const bool isModifier = key >= key::kLeftShift;
+  const bool changedBefore =
+      !steps_.empty() && std::ranges::any_of(steps_.back().input.keys, [&](const KeyEvent& e) { return e.key == key; });
+  HostInput& input =
+      open(changedBefore || (!steps_.empty() && (steps_.back().clicked || !steps_.back().input.text.empty())));
   keys_[static_cast<std::size_t>(key)] = down;
-  KeyEvent event{key, down, repeat, false, false, false};
+  noteHeld(input);
+  KeyEvent event{key, down, false, false, false};
   event.control = held(key::kLeftControl) || held(key::kRightControl);
   event.shift = held(key::kLeftShift) || held(key::kRightShift);
   event.alt = held(key::kLeftAlt) || held(key::kRightAlt);
-  next_.keys.push_back(event);
-  if (!down || repeat) return;
-  if (key == key::kEscape) next_.pressed += '\x1b';
-  else if (key >= ' ' && key < 127) next_.pressed += static_cast<char>(key);
+  input.keys.push_back(event);
+  if (!down) return;
+  const bool hasCharacter = key >= ' ' && key < 127;
+  if (!hasCharacter && !isModifier) steps_.back().edited = true;
+  if (key == key::kEscape) input.pressed += '\x1b';
+  else if (hasCharacter) input.pressed += static_cast<char>(key);
+}
+
+void InputState::text(std::string_view utf8) {
+  open(!steps_.empty() && (steps_.back().clicked || steps_.back().edited)).text += utf8;
+}
+
+void InputState::cursor(const glm::dvec2& position) {
+  HostInput& input = open(!steps_.empty() && (steps_.back().clicked || steps_.back().input.wheel != glm::dvec2(0.0)));
+  cursor_ = position;
+  input.cursor = position;
 }
 
 void InputState::button(MouseButton button, bool down) {
-  buttons_[static_cast<std::size_t>(button)] = down;
-  if (down) next_.buttons[static_cast<std::size_t>(button)] = true;
+  bool& held = buttons_[static_cast<std::size_t>(button)];
+  if (held == down) return;
+  const bool dragging = buttons_ != std::array<bool, 3>{};
+  open(!steps_.empty() && (dragging || steps_.back().clicked || !steps_.back().input.keys.empty()));
+  held = down;
+  noteHeld(steps_.back().input);
+  steps_.back().clicked = true;
 }
 
 void InputState::focus(bool focused) {
-  next_.focused = focused;
+  focused_ = focused;
+  open().focused = focused;
   if (focused) return;
   for (int key = 0; key < key::kCount; ++key)
     if (held(key)) this->key(key, false);
-  buttons_ = {};
+  for (const MouseButton each : {MouseButton::left, MouseButton::right, MouseButton::middle}) button(each, false);
 }
 
 HostInput InputState::take() {
-  HostInput input = std::exchange(next_, {});
-  next_.focused = input.focused;
-  for (std::size_t i = 0; i < buttons_.size(); ++i) input.buttons[i] = input.buttons[i] || buttons_[i];
-  input.cursor = cursor_;
-  const bool dragging = input.buttons[static_cast<std::size_t>(MouseButton::left)];
-  if (dragging && dragged_) input.mouseDelta = cursor_ - lastCursor_;
+  HostInput input;
+  if (steps_.empty()) {
+    noteHeld(input);
+  } else {
+    input = std::move(steps_.front().input);
+    steps_.pop_front();
+  }
+  const bool dragging = input.buttons != std::array<bool, 3>{};
+  if (dragging && dragged_) input.mouseDelta = input.cursor - lastCursor_;
   dragged_ = dragging;
-  lastCursor_ = cursor_;
-  const auto one = [&](int key) { return held(key) ? 1.0 : 0.0; };
-  input.move = {one('D') - one('A'), one('E') - one('Q'), one('W') - one('S')};
-  input.fast = held(key::kLeftShift) || held(key::kRightShift);
+  lastCursor_ = input.cursor;
   return input;
+}
+
+bool InputState::takeEscape() {
+  for (Step& step : steps_) {
+    if (step.input.pressed.find('\x1b') == std::string::npos) continue;
+    std::erase(step.input.pressed, '\x1b');
+    std::erase_if(step.input.keys, [](const KeyEvent& event) { return event.key == key::kEscape && event.down; });
+    return true;
+  }
+  return false;
+}
+
+bool InputState::closes() const {
+  return std::ranges::any_of(steps_, [](const Step& step) { return step.input.closeRequested; });
 }
 
 }  // namespace lucerna

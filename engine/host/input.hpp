@@ -1,10 +1,11 @@
-// Keyboard and mouse events since the last poll (no GL), filled by a window's callbacks or from a recorded input file.
+// Keyboard and mouse events (no GL), filled by a window's callbacks or from a recorded input file.
 #pragma once
 
 #include <glm/glm.hpp>
 
 #include <array>
 #include <bitset>
+#include <deque>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -12,7 +13,8 @@
 
 namespace lucerna {
 
-/// Keys: printable ones are their upper-case ASCII character on a US keyboard, others the values below (GLFW's).
+/// Keys: printable ones are the upper-case ASCII character on them, whatever the keyboard's layout; those without one
+/// are named by their place on a US keyboard. Others are the values below (GLFW's).
 namespace key {
 inline constexpr int kEscape = 256, kEnter = 257, kTab = 258, kBackspace = 259, kInsert = 260, kDelete = 261,
                      kRight = 262, kLeft = 263, kDown = 264, kUp = 265, kPageUp = 266, kPageDown = 267, kHome = 268,
@@ -30,49 +32,66 @@ enum class MouseButton { left, right, middle };
 struct KeyEvent {
   int key = 0;
   bool down = false;
-  bool repeat = false;  ///< auto-repeat of a held key
   bool control = false, shift = false, alt = false;
 };
 
-/// Keyboard and mouse events since the last poll; empty without a window.
+/// What happened in one step of input. Empty without a window.
 struct HostInput {
   bool closeRequested = false;
-  std::vector<KeyEvent> keys;  ///< in order
+  std::vector<KeyEvent> keys;  ///< in order, none twice
   std::string text;  ///< typed text, UTF-8
   glm::dvec2 cursor{-1.0};  ///< framebuffer pixels, (0,0) top left
-  std::array<bool, 3> buttons{};  ///< held, by MouseButton; also if pressed and released since the last poll
+  std::array<bool, 3> buttons{};  ///< held, by MouseButton
   glm::dvec2 wheel{0.0};  ///< steps; +y away from the user
   std::vector<std::filesystem::path> dropped;  ///< files dropped onto the window
   bool focused = true;
+  bool exposed = false;  ///< the window's content was lost
 
   // The same, prepared for first-person movement.
-  glm::dvec2 mouseDelta{0.0};  ///< pixels, while the left button is held; +y down
+  glm::dvec2 mouseDelta{0.0};  ///< pixels, while a button is held; +y down
   glm::dvec3 move{0.0};  ///< held keys: x right (D-A), y up (E-Q), z forward (W-S), each -1, 0 or 1
   bool fast = false;  ///< shift held
-  std::string pressed;  ///< characters of the keys pressed since the last poll, upper case; Escape is '\x1b'
+  std::string pressed;  ///< characters of the keys pressed in this step, upper case; Escape is '\x1b'
 };
 
-/// Collects events and hands them out frame by frame.
+/// Queues events and hands them out step by step. However long a frame takes, none is lost, and each step is one that a
+/// user interface of one frame can tell: no key or button changes twice, and a click, a typed text or an editing key
+/// starts a new step where the order of both matters.
 class InputState {
  public:
-  void key(int key, bool down, bool repeat = false);
-  void text(std::string_view utf8) { next_.text += utf8; }
-  void cursor(const glm::dvec2& position) { cursor_ = position; }
+  void key(int key, bool down);
+  void text(std::string_view utf8);
+  void cursor(const glm::dvec2& position);
   void button(MouseButton button, bool down);
-  void wheel(const glm::dvec2& steps) { next_.wheel += steps; }
-  void drop(const std::filesystem::path& file) { next_.dropped.push_back(file); }
-  void close() { next_.closeRequested = true; }
+  void wheel(const glm::dvec2& steps) { open().wheel += steps; }
+  void drop(const std::filesystem::path& file) { open().dropped.push_back(file); }
+  void expose() { open().exposed = true; }
+  void close() { open().closeRequested = true; }
   /// Releases all keys and buttons if the window loses focus, because no release events arrive then.
   void focus(bool focused);
-  /// All events since the last call.
+  /// Whether a step waits.
+  bool waits() const { return !steps_.empty(); }
+  /// The oldest step that waits; if there is none, what is held.
   HostInput take();
+  /// Whether Escape was pressed in a step that waits. It is taken out, so that nothing else acts on it.
+  bool takeEscape();
+  /// Whether the window was asked to close in a step that waits.
+  bool closes() const;
 
  private:
+  struct Step {
+    HostInput input;
+    bool clicked = false, edited = false;  ///< a button changed; a key without a character went down
+  };
   bool held(int key) const { return keys_[static_cast<std::size_t>(key)]; }
-  HostInput next_;
+  HostInput& open(bool anew = false);
+  void noteHeld(HostInput& input) const;
+
+  std::deque<Step> steps_;
   std::bitset<key::kCount> keys_;
   std::array<bool, 3> buttons_{};
-  glm::dvec2 cursor_{-1.0}, lastCursor_{-1.0};
+  glm::dvec2 cursor_{-1.0}, lastCursor_{-1.0};  ///< of the last event; of the last step handed out
+  bool focused_ = true;
   bool dragged_ = false;
 };
 
