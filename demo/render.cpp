@@ -172,7 +172,7 @@ int runRender(RenderOptions options) {
 
 Work addRender(Command app) {
   auto options = std::make_shared<RenderOptions>();
-  app.addOption("SCENE", options->scene.file, "a scene file: JSON, OBJ, glTF, PLY, ...").required();
+  app.addOption("SCENE", options->scene.file, "a scene file: JSON, OBJ, glTF, PLY, ...").required().scene();
   app.addOption("--camera", options->camera, "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");
   app.addOption("-o,--output", options->output,
                 "OUT.{png,hdr,exr,pfm}; png is tone mapped, the others are linear; may be left out with --samples");

@@ -3,7 +3,7 @@
 
 run_packages="g++ cmake ninja-build pkg-config libglew-dev libglfw3-dev libglm-dev libassimp-dev libdevil-dev
   libimgui-dev libegl-dev libgl-dev libegl1 libgl1-mesa-dri libopenexr-dev libfmt-dev libcli11-dev nlohmann-json3-dev"
-test_packages="libgtest-dev xvfb xauth"
+test_packages="libgtest-dev xvfb xauth xdotool"
 # Optional packages: the host osmesa, plots, and Embree, a baseline for rays.
 optional_run_packages="libosmesa6-dev gnuplot-nox"
 optional_test_packages="libembree-dev glslang-tools"

@@ -310,9 +310,10 @@ int runAll(AllOptions options) {
 Work addBenchAll(Command app) {
   auto options = std::make_shared<bench::AllOptions>();
   app.addOption(
-      "SCENE", options->scenes,
-      "scene files for error and features (default: the Cornell box and the atrium); the first for the tables "
-      "and pictures of lpv (default: the atrium)");
+         "SCENE", options->scenes,
+         "scene files for error and features (default: the Cornell box and the atrium); the first for the tables "
+         "and pictures of lpv (default: the atrium)")
+      .scene();
   app.addOption("--out", options->out, "folder for the report; an interrupted one is resumed").required();
   addCompletions(app.addOption("--parts", options->parts,
                                "of error, deviations, stability, features, rays, tables, pictures; default: all")

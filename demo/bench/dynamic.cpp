@@ -431,7 +431,8 @@ Work addBenchDynamic(Command app) {
   auto options = std::make_shared<DynamicOptions>();
   options->picture.size = "160x90";
   options->out = "dynamic";
-  app.addOption("SCENE", options->scene, "a scene file that moves (default: the Cornell box with a block and a lamp)");
+  app.addOption("SCENE", options->scene, "a scene file that moves (default: the Cornell box with a block and a lamp)")
+      .scene();
   app.addOption("--techniques", options->techniques, "what is measured (direct, rsm, lpv, irradiance-cache)");
   app.addOption("--point", options->points,
                 "\"TECHNIQUE [SETTING=VALUE]...\": measured too, as a budget of its own (irradiance-cache "

@@ -420,7 +420,7 @@ int runReferences(ReferencesOptions options) {
 
 Work addBenchReferences(Command app) {
   auto options = std::make_shared<ReferencesOptions>();
-  app.addOption("SCENE", options->bench.scene, "a scene file (default: the atrium)");
+  app.addOption("SCENE", options->bench.scene, "a scene file (default: the atrium)").scene();
   options->bench.declareView(app);
   app.addOption("--reference-spp", options->bench.referenceSamples, "paths per pixel of every reference")
       .required()
@@ -433,7 +433,7 @@ Work addBenchReferences(Command app) {
 
 Work addBenchError(Command app) {
   auto options = std::make_shared<ErrorOptions>();
-  app.addOption("SCENE", options->bench.scene, "a scene file (default: the atrium)");
+  app.addOption("SCENE", options->bench.scene, "a scene file (default: the atrium)").scene();
   options->bench.declare(app);
   app.addFlag("--deviations", options->bench.deviations,
               "measure each deviation of the originals alone, instead of sweeps of settings");

@@ -157,7 +157,7 @@ int runFeatures(FeaturesOptions options) {
 Work addBenchFeatures(Command app) {
   auto options = std::make_shared<FeaturesOptions>();
   options->picture.size = "320x180";
-  app.addOption("SCENE", options->scenes, "scene files (default: the atrium)");
+  app.addOption("SCENE", options->scenes, "scene files (default: the atrium)").scene();
   app.addOption("--camera", options->camera, "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");
   app.addOption("--frames", options->frames, "pictures of each kind, in turn").showDefault().range(1, 10000);
   options->picture.declare(app);

@@ -328,7 +328,7 @@ int runFrame(FrameOptions options) {
 
 Work addBenchFrame(Command app) {
   auto options = std::make_shared<bench::FrameOptions>();
-  app.addOption("SCENE", options->scene, "a scene file (default: the atrium)");
+  app.addOption("SCENE", options->scene, "a scene file (default: the atrium)").scene();
   app.addOption("-o,--output", options->output, "PAGE.md; its pictures go into a folder PAGE beside it").required();
   app.addOption("--technique", options->techniques,
                 "\"TECHNIQUE [SETTING=VALUE]...\" of direct, rsm, lpv, irradiance-cache (default); several follow each "

@@ -325,7 +325,7 @@ int runRaysCommand(const RaysCommandOptions& options) {
 
 Work addBenchRays(Command app) {
   auto options = std::make_shared<RaysCommandOptions>();
-  app.addOption("SCENE", options->scene, "a scene file (default: the atrium)");
+  app.addOption("SCENE", options->scene, "a scene file (default: the atrium)").scene();
   app.addOption("--rays", options->bench.rays, "number of rays of each kind").showDefault();
   app.addOption("--repeats", options->bench.repeats, "measurements of each kind, after one warm-up").showDefault();
   app.addOption("--camera", options->bench.camera,

@@ -130,7 +130,7 @@ int runTune(TuneOptions options) {
 
 Work addTune(Command app) {
   auto options = std::make_shared<TuneOptions>();
-  app.addOption("SCENE", options->bench.scene, "a scene file (default: the atrium)");
+  app.addOption("SCENE", options->bench.scene, "a scene file (default: the atrium)").scene();
   app.addOption("--frame-time", options->frameTime,
                 "at most this many milliseconds per picture: settings with the least error")
       .positive();

@@ -316,7 +316,8 @@ int runPictures(const PicturesOptions& options) {
 Work addBenchPictures(Command app) {
   auto options = std::make_shared<PicturesOptions>();
   app.addOption("SCENE", options->scene,
-                "a scene file for lpv (default: the atrium; the published scene is Crytek Sponza)");
+                "a scene file for lpv (default: the atrium; the published scene is Crytek Sponza)")
+      .scene();
   addCompletions(app.addOption("--original", options->original, "the original: lpv, rad or vpt").required(),
                  {"lpv", "rad", "vpt"});
   app.addOption("-o,--output", options->output, "FILE.png").required();

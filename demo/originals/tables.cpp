@@ -220,7 +220,8 @@ int runTables(TablesOptions options) {
 Work addBenchTables(Command app) {
   auto options = std::make_shared<TablesOptions>();
   app.addOption("SCENE", options->scene,
-                "a scene file for lpv (default: the atrium; the published scene is Crytek Sponza)");
+                "a scene file for lpv (default: the atrium; the published scene is Crytek Sponza)")
+      .scene();
   addCompletions(app.addOption("--original", options->original, "the original: lpv, rad or vpt").required(),
                  {"lpv", "rad", "vpt"});
   app.addOption("--scale", options->scale,

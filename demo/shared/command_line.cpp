@@ -5,6 +5,7 @@
 #include "shared/command_tree.hpp"
 #include "shared/commands.hpp"
 #include "shared/completions.hpp"
+#include "shared/shipped_scenes.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
@@ -76,6 +77,11 @@ Option Option::values(int least, int most) const {
 
 Option Option::typeName(const std::string& name) const {
   option_->type_name(name);
+  return *this;
+}
+
+Option Option::scene() const {
+  option_->transform(sceneFileOf);
   return *this;
 }
 
@@ -280,6 +286,9 @@ int runProgram(const Program& program, int argc, char** argv,
     }
     printError(fmt::format("{} (lucerna {}--help lists the options)", error.what(), used));
     return static_cast<int>(ErrorKind::badInput);
+  } catch (const Error& error) {  // of a value that is looked up
+    printError(error.what());
+    return error.exitCode();
   }
   try {
     checkNumbers(app);

@@ -35,6 +35,7 @@ class Option {
   Option delimiter(char between) const;  ///< for a list in one argument
   Option values(int least, int most) const;  ///< number of values
   Option typeName(const std::string& name) const;
+  Option scene() const;  ///< a scene file, or the name of a shipped scene, which becomes its file
 
   // Valid after parsing.
   std::string name() const;

@@ -11,6 +11,8 @@
 #include "walk/controls.hpp"
 #include "walk/keys.hpp"
 #include "walk/pixel_section.hpp"
+#include "walk/recent_files.hpp"
+#include "shared/shipped_scenes.hpp"
 #include "walk/settings_section.hpp"
 #include "walk/shots.hpp"
 
@@ -20,6 +22,7 @@
 #include <array>
 #include <cfloat>
 #include <cmath>
+#include <map>
 #include <utility>
 
 namespace lucerna::demo {
@@ -38,6 +41,28 @@ void endSection() { ImGui::PopID(); }
 
 // ---------------------------------------------------------------------------------------------------- sections
 
+using Files = std::map<std::string, std::filesystem::path>;
+
+Files recentByName() {
+  Files files;
+  for (const std::filesystem::path& file : recentFiles()) files.emplace(file.filename().string(), file);
+  return files;
+}
+
+/// A menu of files, which are sought when it is opened.
+void openMenu(Ui& ui, WalkState& s, const char* label, Files (*files)()) {
+  if (!ImGui::BeginCombo(label, "open ...")) {
+    ui.note(label);
+    return;
+  }
+  if (ui.escapes()) ImGui::CloseCurrentPopup();
+  for (const auto& [name, file] : files()) {
+    if (ImGui::Selectable(name.c_str())) s.sceneToLoad = file;
+    ui.note(std::string(label) + ": " + name);
+  }
+  ImGui::EndCombo();
+}
+
 void showScene(Ui& ui, WalkState& s) {
   const Scene& scene = *s.scene;
   line(scene.name);
@@ -55,6 +80,8 @@ void showScene(Ui& ui, WalkState& s) {
   ImGui::SameLine();
   checkbox(ui, "on a ground", s.ground);
   explain("Models without their own light get a grey floor when loaded here, in addition to our sun and sky.");
+  openMenu(ui, s, "shipped scenes", shippedScenes);
+  openMenu(ui, s, "recent files", recentByName);
 }
 
 void frameScene(WalkState& s) {

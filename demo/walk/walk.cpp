@@ -20,6 +20,7 @@
 #include "render/deviations.hpp"
 #include "walk/keys.hpp"
 #include "walk/options.hpp"
+#include "walk/recent_files.hpp"
 #include "shared/paths.hpp"
 #include "scene/motion.hpp"
 #include "scene/scene_file.hpp"
@@ -224,6 +225,7 @@ int play(const WalkOptions& options, Host& host, const gl::Context& context, gl:
   state.hint = !measures;
   state.messageAge = measures ? 1e9 : 0.0;
   // Run until it is closed, then report.
+  if (host.kind() == HostKind::window && options.playInput.empty()) rememberFile(options.scene);
   WalkWindow window(options, host, context, programs, std::move(state));
   window.run();
   SideState& side = window.state().sides[0];
@@ -278,7 +280,9 @@ int runWalk(WalkOptions options) {
 
 Work addWalk(Command app) {
   auto options = std::make_shared<WalkOptions>();
-  app.addOption("SCENE", options->scene, "a scene file (default: a day in the atrium)");
+  app.addOption("SCENE", options->scene,
+                "a scene file, or the name of a shipped scene, such as cornell (default: a day in the atrium)")
+      .scene();
   app.addOption(
       "--keys", options->keys,
       "key frames of the camera path and of what is carried (default: the scene's, else one round around it)");

@@ -15,6 +15,8 @@
 #include "walk/panel.hpp"
 #include "shared/paths.hpp"
 #include "walk/pixel_section.hpp"
+#include "walk/recent_files.hpp"
+#include "shared/shipped_scenes.hpp"
 
 #include <fmt/format.h>
 
@@ -356,8 +358,9 @@ void WalkWindow::moveCamera(double seconds) {
 
 void WalkWindow::loadWantedScene() {
   if (!state_.sceneToLoad) return;
-  const fs::path file = *std::exchange(state_.sceneToLoad, std::nullopt);
+  const fs::path wanted = *std::exchange(state_.sceneToLoad, std::nullopt);
   try {
+    const fs::path file = sceneFileOf(wanted.string());
     breathe("loading " + file.filename().string());
     auto scene = std::make_unique<Scene>(loadScene(file));
     if (state_.ground && wantsGround(*scene)) addGround(*scene);
@@ -387,6 +390,7 @@ void WalkWindow::loadWantedScene() {
     a.built = a.options;
     a.builtAs = textOf(a.options) + fmt::format(" {}", state_.sceneVersion);
     state_.sceneText = file.string();
+    if (host_.kind() == HostKind::window && !player_) rememberFile(file);
     state_.path.spline = std::move(path);
     state_.path.first = 0;
     state_.path.last = state_.path.spline->viewCount() - 1;

@@ -285,6 +285,65 @@ TEST_F(Window, TheSunIsDraggedThroughAllSteps) {
   EXPECT_NEAR(sun.at(1).get<double>(), -1.0 / std::hypot(0.5, 1.0, 0.3), 1e-5);
 }
 
+// A drag is one edit, however many steps it had.
+TEST_F(Window, LightIsUndoneAndMadeAgain) {
+  const auto sunAfter = [&](const std::string& more) {
+    write("input.txt",
+          "1 key R\n2 touch Light\n3 touch Light/sun azimuth\n30 press left\n32 cursor 590 360\n"
+          "36 cursor 610 420\n38 cursor 799 420\n40 release left\n" +
+              more);
+    const RunResult result = play(path("input.txt"), "--technique direct", "", "800x700");
+    EXPECT_EQ(result.exitCode, 0) << result.err;
+    return json().at("window").at("sun");
+  };
+  const auto turned = sunAfter("44 cursor 10 10\n");
+  const auto before =
+      sunAfter("44 key control+Z\n45 key control+Z\n50 cursor 10 10\n");  // the click of touch, and the drag
+  EXPECT_NEAR(before.at(0).get<double>(), -0.5 / std::hypot(0.5, 1.0, 0.3), 1e-6);
+  EXPECT_EQ(sunAfter("44 key control+Z\n45 key control+Z\n46 key control+Y\n47 key control+shift+Z\n50 cursor 10 10\n"),
+            turned);
+}
+
+// Escape closes what is open, then asks; Escape again stays, Enter quits.
+TEST_F(Window, EscapeClosesListsAndHelpBeforeItAsks) {
+  write("input.txt",
+        "1 key R\n2 touch Timings\n3 touch Technique A/technique\n40 save list.png\n41 key escape\n44 save after.png\n"
+        "45 key F1\n48 save help.png\n49 key escape\n52 save closed.png\n53 key escape\n56 save asks.png\n"
+        "57 key escape\n60 save stays.png\n61 key escape\n63 key enter\n70 save never.png\n");
+  const RunResult result = play(path("input.txt"), "--technique direct", "", "800x700");
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  const auto controls = json().at("window").at("controls");
+  EXPECT_EQ(std::count(controls.begin(), controls.end(), "Question/quit (Enter)"), 1);
+  for (const char* open : {"list.png", "help.png", "asks.png"}) EXPECT_TRUE(read(open) != read("after.png")) << open;
+  for (const char* shut : {"closed.png", "stays.png"}) EXPECT_TRUE(read(shut) == read("after.png")) << shut;
+  EXPECT_FALSE(fs::exists(path("never.png")));
+}
+
+// About what is in the middle: that point stays where it is, at the same distance.
+TEST_F(Window, TheMouseOrbitsPansAndDollies) {
+  write("room.json", R"({"model": "room.obj", "sun": {"direction": [-0.5, -1, -0.3], "irradiance": [3, 3, 3]},
+    "cameras": [{"name": "first", "position": [0, 1, 3], "target": [0, 1, -2], "fov": 60}]})");
+  write("path.txt", "p 0 1 3 d 0 0 -1 u 0 1 0 f 60\np 0 1 3 d 0 0 -1 u 0 1 0.001 f 60\n");
+  const auto viewAfter = [&](const std::string& mouse) {
+    write("input.txt", "1 key R\n2 key C\n4 cursor 200 200\n" + mouse +
+                           "30 key K\n31 key K\n"
+                           "32 touch Record and window\n33 touch Record and window/write\n");
+    const RunResult result = play(path("input.txt"), "--technique direct", "", "800x700");
+    EXPECT_EQ(result.exitCode, 0) << result.err;
+    return lucerna::readKeyFrames(path("key_frames.txt")).camera.front();
+  };
+  const glm::dvec3 pivot(0.0, 1.0, -2.0);
+  const auto orbited = viewAfter("6 press left\n8 cursor 150 180\n10 release left\n");
+  EXPECT_NEAR(glm::length(orbited.position - pivot), 5.0, 0.02);
+  EXPECT_NEAR(glm::length(orbited.position + 5.0 * orbited.direction - pivot), 0.0, 0.02);
+  EXPECT_GT(orbited.position.x, 1.0);
+  const auto panned = viewAfter("6 press middle\n8 cursor 270 200\n10 release middle\n");
+  EXPECT_NEAR(panned.position.x, -70.0 / 700.0 * 2.0 * std::tan(M_PI / 6.0) * 5.0, 0.02);
+  EXPECT_NEAR(panned.position.z, 3.0, 1e-6);
+  const auto nearer = viewAfter("6 wheel 2\n");
+  EXPECT_NEAR(nearer.position.z, -2.0 + 5.0 * 0.85 * 0.85, 0.02);
+}
+
 // Without ffmpeg a line says so; with one, it is given every picture. Here one stands in for it that counts bytes.
 TEST_F(Window, VideosGoToFfmpeg) {
   write("input.txt", "1 key R\n2 key V\n30 key V\n32 key F2\n");
@@ -379,6 +438,22 @@ TEST_F(Window, AFileThatFailsSaysWhyAndTheSceneStays) {
   EXPECT_NE(all.find("other: 8 triangles"), std::string::npos) << all;  // 6, and the ground's 2
 }
 
+TEST_F(Window, ShippedScenesAreOpenedByName) {
+  write("input.txt",
+        "1 key R\n2 touch Scene\n3 touch Scene/shipped scenes\n4 touch Scene/shipped scenes: door\n"
+        "40 touch Scene/recent files\n");
+  const RunResult result = play(path("input.txt"), "--technique direct", "XDG_STATE_HOME=" + path("state"), "800x700");
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  const auto messages = json().at("window").at("messages");
+  EXPECT_EQ(
+      std::count_if(messages.begin(), messages.end(), [](const std::string& m) { return m.starts_with("door: "); }), 1)
+      << messages;
+  const RunResult typed = RUN_LUCERNA("walk corn");
+  EXPECT_EQ(typed.exitCode, 2);
+  EXPECT_NE(typed.err.find("no shipped scene: "), std::string::npos) << typed.err;
+  EXPECT_NE(typed.err.find("cornell"), std::string::npos) << typed.err;
+}
+
 TEST_F(Window, KeyFramesAreWrittenAsTheyAreRead) {
   write(
       "input.txt",
@@ -418,6 +493,52 @@ TEST_F(Window, InAVirtualDisplay) {
   ASSERT_EQ(result.exitCode, 0) << result.err;
   EXPECT_EQ(glComplaints(result.err), "");
   EXPECT_EQ(json().at("host"), "window");
+}
+
+// Keys that are pressed while programs compile act afterwards, in order, and mean what is printed on them: on a Czech
+// keyboard Y and Z have changed places. Then nothing moves, and nothing is spent.
+TEST_F(Window, LosesNoKeyAndRests) {
+  for (const char* tool : {"xvfb-run", "xdotool", "setxkbmap"})
+    if (run(std::string("command -v ") + tool).exitCode != 0) GTEST_SKIP() << "no " << tool;
+  write("drive.sh", R"(
+    setxkbmap cz
+    export XDG_STATE_HOME=state
+    "$1" walk room.json --size 640x360 --technique direct --host window $2 >out.txt 2>err.txt &
+    walk=$!
+    titled() { for i in $(seq 300); do xdotool getwindowname "$window" 2>/dev/null | grep -q "$1" && return; sleep 0.1
+               window=$(xdotool search --name Lucerna | tail -1); done; echo "never $1"; kill $walk; exit 1; }
+    titled "frames a second\|at rest"
+    xdotool windowfocus "$window" mousemove 100 100
+    if [ -z "$2" ]; then
+      titled "at rest"
+      ticks() { awk '{print $14 + $15}' /proc/$walk/stat; }
+      before=$(ticks); sleep 2; echo ticks $(($(ticks) - before))
+    else
+      xdotool key r
+      xdotool key 3 key k key k key k
+      xdotool key ctrl+z
+      sleep 1
+    fi
+    xdotool key Escape; sleep 0.5; xdotool key Return
+    wait $walk; echo exit $?
+)");
+  const auto drive = [&](const std::string& arguments) {
+    return run("cd '" + path("") +
+               "' && timeout 120 xvfb-run -a -s '-screen 0 1280x800x24 -noreset' bash drive.sh '" LUCERNA_BINARY "' '" +
+               arguments + "'");
+  };
+  const RunResult rests = drive("");
+  EXPECT_NE(rests.out.find("exit 0"), std::string::npos) << rests.out << rests.err << read("err.txt");
+  int ticks = -1;
+  std::sscanf(rests.out.c_str(), "ticks %d", &ticks);
+  EXPECT_GE(ticks, 0);
+  EXPECT_LE(ticks, 4) << "hundredths of a second in two seconds";
+  EXPECT_EQ(read("state/lucerna/recent-scenes"), fs::weakly_canonical(path("room.json")).string() + "\n");
+  const RunResult typed = drive("--json walk.json");
+  ASSERT_NE(typed.out.find("exit 0"), std::string::npos) << typed.out << typed.err << read("err.txt");
+  const auto messages = json().at("window").at("messages");
+  EXPECT_EQ(std::count(messages.begin(), messages.end(), "3 key frames"), 1) << messages;
+  EXPECT_EQ(std::count(messages.begin(), messages.end(), "settings as before"), 1) << messages;
 }
 
 // At the end of its path a walk that nobody touches ends, but not under a panel: that one is there for somebody.

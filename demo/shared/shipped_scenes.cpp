@@ -1,0 +1,33 @@
+#include "shared/shipped_scenes.hpp"
+
+#include "base/data.hpp"
+#include "base/error.hpp"
+
+namespace lucerna::demo {
+
+namespace fs = std::filesystem;
+
+std::map<std::string, fs::path> shippedScenes() {
+  std::map<std::string, fs::path> scenes;
+  const std::optional<fs::path> data = findDataFolder();
+  if (!data) return scenes;
+  std::error_code error;
+  // reference.json of assets/check is no scene.
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(*data / "assets", error))
+    if (entry.path().extension() == ".json" && entry.path().parent_path().filename() != "check")
+      scenes.emplace(entry.path().stem().string(), entry.path());
+  return scenes;
+}
+
+std::string sceneFileOf(const std::string& text) {
+  std::error_code error;
+  if (text.empty() || fs::exists(text, error) || fs::path(text).has_parent_path()) return text;
+  const auto scenes = shippedScenes();
+  if (const auto found = scenes.find(text); found != scenes.end()) return found->second.string();
+  if (fs::path(text).has_extension() || scenes.empty()) return text;
+  std::string known;
+  for (const auto& [name, file] : scenes) known += (known.empty() ? "" : ", ") + name;
+  throwBadInput("{}: no such file, and no shipped scene: {}", text, known);
+}
+
+}  // namespace lucerna::demo
