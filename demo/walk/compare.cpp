@@ -53,6 +53,8 @@ void Compare::record(const gl::Framebuffer& target, glm::ivec2 size, const Input
     magnifier = {middle.x, static_cast<float>(size.y) - middle.y, kMagnifierRadius, kMagnification};
   }
   compose_->set("magnifier", magnifier);
+  compose_->set("bars[0]", in.left.bar);
+  compose_->set("bars[1]", in.layout == Layout::one ? glm::vec4(0.0f) : in.right.bar);
   gl::drawFullScreen(noAttributes_);
 }
 

@@ -25,6 +25,7 @@ class Compare {
     const gl::Texture* radiance = nullptr;  ///< linear, bottom row first
     Show show = Show::picture;
     const gl::Texture* flip = nullptr;  ///< if show is flip
+    glm::vec4 bar{0.0f};  ///< where its colour scale is drawn: lower corner, size, in the target's pixels; 0: nowhere
   };
   struct Inputs {
     Side left, right;  ///< right is not read if the layout is one

@@ -164,7 +164,10 @@ bool Ui::wantsMouse(const HostInput& input) const {
   });
 }
 
-void Ui::drop() { ImGui::EndFrame(); }
+void Ui::drop() {
+  ImGui::EndFrame();
+  ImGui::SetCurrentContext(panel_);
+}
 
 void Ui::end(const gl::Framebuffer& target) {
   ImGui::Render();

@@ -12,6 +12,7 @@
 #include "gl/read_pictures.hpp"
 #include "scene/motion.hpp"
 #include "walk/ground.hpp"
+#include "walk/labels.hpp"
 #include "walk/panel.hpp"
 #include "shared/paths.hpp"
 #include "walk/pixel_section.hpp"
@@ -630,11 +631,24 @@ void WalkWindow::compose() {
                                               shown.renderer->size(), state_.countWhite),
                    Show::values, nullptr};
   }
-  if (plain) gl::copyTexels(shown.renderer->display(), {0, 0}, picture_, {0, 0}, view_);
-  else if (inputs.left.radiance) compare_->record(pictureTarget_, view_, inputs);
+  std::vector<Label> labels;
+  if (!plain && inputs.left.radiance) {
+    if (!ui_) ui_.emplace(programs_, host_, host_.contentScale());
+    ui_->beginNote(window_, 0.02);  // for the size of text
+    labels = placeLabels(state_, view_, inputs);
+    ui_->drop();
+    compare_->record(pictureTarget_, view_, inputs);
+  } else if (plain) {
+    gl::copyTexels(shown.renderer->display(), {0, 0}, picture_, {0, 0}, view_);
+  }
   readPixel(inputs);
   inspectPixel(inputs);
   overlay_.draw({pictureTarget_, inputs, view_, window_.y, host_.contentScale()});
+  if (!labels.empty()) {
+    ui_->beginNote(window_, 0.02);
+    drawLabels(labels, *ImGui::GetForegroundDrawList());
+    ui_->end(pictureTarget_);
+  }
   if (state_.shotWanted) recorder_.takeShot(shownPicture());
 }
 

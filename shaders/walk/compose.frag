@@ -19,6 +19,7 @@ uniform vec2 centre;       // point of the picture, 0..1, shown in the middle of
 uniform float exposure;
 uniform float errorScale;  // radiance at the end of the signed colours
 uniform vec4 magnifier;    // centre in pixels of the target, radius in pixels (0: none), factor
+uniform vec4 bars[2];      // colour scales of left and right: lower corner and size in pixels of the target (0: none)
 layout(location = 0) out vec4 displayColor;
 
 const int SHOW_PICTURE = 0, SHOW_SIGNED = 1, SHOW_RELATIVE = 2, SHOW_Z = 3, SHOW_FLIP = 4, SHOW_VALUES = 5;
@@ -31,6 +32,19 @@ vec3 diverging(float t) {
 }
 // Black (0) through red and yellow to white (1).
 vec3 heat(float t) { return clamp(vec3(3.0 * t, 3.0 * t - 1.0, 3.0 * t - 2.0), 0.0, 1.0); }
+
+// In standard errors of the reference; grey where noise explains the difference. A pixel's channels are assumed to rise
+// and fall together.
+const float MOST_Z = 20.0;
+vec3 zColor(float z) {
+  return abs(z) < 3.0 ? vec3(0.35) : diverging(sign(z) * clamp(abs(z) / MOST_Z, 0.15, 1.0));
+}
+
+// The colour scale of a view at 0..1 of its length.
+vec3 scaleColor(int view, float t) {
+  if (view == SHOW_SIGNED) return diverging(2.0 * t - 1.0);
+  return view == SHOW_Z ? zColor(MOST_Z * (2.0 * t - 1.0)) : heat(t);
+}
 
 vec3 shown(bool right, vec2 place) {
   ivec2 size = right ? textureSize(rightPicture, 0) : textureSize(leftPicture, 0);
@@ -49,14 +63,17 @@ vec3 shown(bool right, vec2 place) {
     vec3 d = abs(radiance - reference);
     return heat(max(d.x, max(d.y, d.z)) / max(max(reference.x, max(reference.y, reference.z)), 1e-30));
   }
-  // In standard errors of the reference; grey where noise explains the difference. A pixel's channels are assumed to
-  // rise and fall together.
-  float z = difference / max(luminance(noise), 1e-30);
-  return abs(z) < 3.0 ? vec3(0.35) : diverging(sign(z) * clamp(abs(z) / 20.0, 0.15, 1.0));
+  return zColor(difference / max(luminance(noise), 1e-30));
 }
 
 void main() {
   vec2 pixel = gl_FragCoord.xy;
+  for (int i = 0; i < 2; ++i) {
+    vec2 inBar = (pixel - bars[i].xy) / max(bars[i].zw, vec2(1e-6));
+    if (bars[i].z <= 0.0 || any(lessThan(inBar, vec2(0.0))) || any(greaterThan(inBar, vec2(1.0)))) continue;
+    displayColor = vec4(scaleColor(i == 0 ? views.x : views.y, inBar.x), 1.0);
+    return;
+  }
   float magnified = zoom;
   if (magnifier.z > 0.0) {
     vec2 offset = pixel - magnifier.xy;

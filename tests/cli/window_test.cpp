@@ -411,6 +411,29 @@ TEST_F(Window, TheReferenceComesWhileTheCameraRests) {
   EXPECT_FALSE(fs::is_empty(path("references")));
 }
 
+// Errors have a colour scale in the picture, from blue over white to red; it is drawn by the colours of the errors.
+TEST_F(Window, ErrorsHaveAColourScaleInThePicture) {
+  write(
+      "input.txt",
+      "1 key R\n1 key F2\n2 key T\n60 save picture.png\n200 key H\n201 save error.png\n202 key X\n203 save wipe.png\n");
+  const RunResult result = play(path("input.txt"), "--technique direct", "", "640x120");
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  const auto isBar = [&](const std::string& file, int x, std::array<int, 3> colour) {
+    const lucerna::Bitmap shown = lucerna::readBitmap(path(file));
+    const std::size_t at = 4 * (std::size_t{48} * static_cast<std::size_t>(shown.width) + static_cast<std::size_t>(x));
+    for (std::size_t c = 0; c < 3; ++c)
+      if (std::abs(shown.rgba[at + c] - colour[c]) > 12) return false;
+    return true;
+  };
+  // 195 pixels from 13 on, three lines of text below the upper edge.
+  EXPECT_FALSE(isBar("picture.png", 14, {0, 0, 255}));
+  EXPECT_TRUE(isBar("error.png", 14, {0, 0, 255}));
+  EXPECT_TRUE(isBar("error.png", 13 + 97, {255, 255, 255}));
+  EXPECT_TRUE(isBar("error.png", 13 + 193, {255, 0, 0}));
+  EXPECT_TRUE(isBar("wipe.png", 14, {0, 0, 255}));
+  EXPECT_TRUE(isBar("wipe.png", 640 - 14, {255, 0, 0})) << "that of B ends at the right";
+}
+
 // While the picture is still being made the reference keeps to its share of what the frames take by themselves, which
 // its own clock says: 0.1, but for what was begun last and is paid back later.
 TEST_F(Window, TheReferenceTakesItsShareOfFramesAlone) {
