@@ -29,7 +29,7 @@ struct RenderOptions {
   PictureOptions picture;
   PathOptions path;
   SceneAt scene;
-  std::string camera, output, inspected;
+  std::string output, inspected;
   int repeat = 1;
 };
 
@@ -54,8 +54,7 @@ int inspect(const RenderOptions& options) {
   settings.fullFloatTarget = true;
   chooseDirectLight(settings);
   const glm::ivec2 pixel = parsePixel(options.inspected, settings.size);
-  const Scene scene = options.scene.load();
-  const Camera camera = chooseCamera(scene, options.camera);
+  const auto [scene, camera] = options.scene.load();
   const auto host = options.common.makeHost(false);
   const gl::Context context;
   gl::ProgramLibrary programs;
@@ -86,16 +85,14 @@ int runRender(RenderOptions options) {
   if (options.picture.technique != "path") options.path.refuseIfGiven(options.picture.technique);
   if (!options.inspected.empty()) return inspect(options);
   if (options.picture.technique == "path")
-    return renderPath(options.common, options.picture, options.path, options.scene, options.camera, options.output);
+    return renderPath(options.common, options.picture, options.path, options.scene, options.output);
   if (options.output.empty()) throwBadInput("--output is missing: the file for the picture");
   RenderSettings settings = options.picture.parse();
   settings.fullFloatTarget = true;
   chooseDirectLight(settings);
   if (!isWritableImageName(options.output))
     throwBadInput("-o {}: the extension must be png, hdr, exr or pfm", options.output);
-  Scene scene = options.scene.load();
-  const Camera camera = chooseCamera(scene, options.camera);
-  setDefaultExposure(scene, camera);
+  const auto [scene, camera] = options.scene.load();
 
   // Render.
   const auto host = options.common.makeHost(false);
@@ -173,10 +170,11 @@ int runRender(RenderOptions options) {
 Work addRender(Command app) {
   auto options = std::make_shared<RenderOptions>();
   app.addOption("SCENE", options->scene.file, "a scene file: JSON, OBJ, glTF, PLY, ...").required().scene();
-  app.addOption("--camera", options->camera, "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");
+  app.addOption("--camera", options->scene.camera,
+                "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");
   app.addOption("-o,--output", options->output,
                 "OUT.{png,hdr,exr,pfm}; png is tone mapped, the others are linear; may be left out with --samples");
-  options->scene.declareTime(app);
+  options->scene.declare(app);
   app.addOption("--repeat", options->repeat, "draw this many frames, for stage times").range(1, 100000).showDefault();
   app.addOption(
       "--inspect", options->inspected,

@@ -120,7 +120,7 @@ PathTracer::Settings tracerSettings(const PictureOptions& picture, const PathOpt
 }
 
 int renderPath(const CommonOptions& common, const PictureOptions& picture, const PathOptions& path,
-               const SceneAt& sceneFile, const std::string& cameraText, const std::string& output) {
+               const SceneAt& sceneFile, const std::string& output) {
   PictureOptions rest = picture;
   if (!path.sizeGiven && (picture.fidelity != "corrected" || isOriginalScene(sceneFile.file)))
     rest.size = kPublishedSize;
@@ -130,9 +130,7 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   if (output.empty() && !part) throwBadInput("--output is missing: the file for the picture");
   if (!output.empty() && !isWritableImageName(output))
     throwBadInput("-o {}: the extension must be png, hdr, exr or pfm", output);
-  Scene scene = sceneFile.load();
-  const Camera camera = chooseCamera(scene, cameraText);
-  setDefaultExposure(scene, camera);
+  const auto [scene, camera] = sceneFile.load();
 
   // Create the path tracer, and load the film of an earlier run.
   const auto host = common.makeHost(false);

@@ -30,6 +30,6 @@ PathTracer::Settings tracerSettings(const PictureOptions& picture, const PathOpt
 
 /// output: empty if only the checkpoint of --samples is wanted.
 int renderPath(const CommonOptions& common, const PictureOptions& picture, const PathOptions& path,
-               const SceneAt& sceneFile, const std::string& cameraText, const std::string& output);
+               const SceneAt& sceneFile, const std::string& output);
 
 }  // namespace lucerna::demo

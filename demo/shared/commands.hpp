@@ -71,13 +71,16 @@ struct PictureOptions {
   std::string impliedTechnique() const;
 };
 
-/// A scene file at a time.
+/// A scene file at a time, seen by a camera.
 struct SceneAt {
   std::string file;
   double time = 0.0;  ///< --time, seconds
+  std::string camera;  ///< --camera
+  bool noFloor = false;  ///< --no-floor
 
-  void declareTime(Command app);
-  Scene load() const;
+  void declare(Command app);
+  /// The scene, in its studio if it has no light of its own (scene/studio.hpp), and the chosen camera.
+  std::pair<Scene, Camera> load() const;
 };
 
 /// "640x360" with both from 1 to 16384; throws Error(badInput) naming the option.

@@ -2,6 +2,8 @@
 #include "base/files.hpp"
 #include "base/log.hpp"
 #include "scene/motion.hpp"
+#include "scene/scene_file.hpp"
+#include "scene/studio.hpp"
 #include "render/techniques.hpp"
 #include "shared/commands.hpp"
 #include "shared/completions.hpp"
@@ -103,11 +105,19 @@ void PictureOptions::declare(Command app) {
   app.setFooter(settingsHelp() + deviationsHelp());
 }
 
-void SceneAt::declareTime(Command app) {
+void SceneAt::declare(Command app) {
   app.addOption("--time", time, "seconds at which a scene that moves is shown").range(-1e12, 1e12).showDefault();
+  app.addFlag("--no-floor", noFloor, "models without light of their own: not on our grey floor");
 }
 
-Scene SceneAt::load() const { return loadScene(file, time); }
+std::pair<Scene, Camera> SceneAt::load() const {
+  std::pair<Scene, Camera> loaded{loadScene(file, time), {}};
+  auto& [scene, view] = loaded;
+  view = chooseCamera(scene, camera);
+  setDefaultExposure(scene, view);
+  if (!noFloor && scene.studio) addFloor(scene);
+  return loaded;
+}
 
 void PictureOptions::readSettingsFile() {
   if (!settingsFile.empty()) addSettingsFile();

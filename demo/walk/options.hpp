@@ -13,7 +13,7 @@ struct WalkOptions {
   PictureOptions picture;
   PartOptions part;  ///< for recorded frames
   std::string scene, keys, record, views, playInput, shots = ".", panel = "auto";
-  bool flicker = false;
+  bool flicker = false, noFloor = false;
   /// Whether to render off-screen into files instead of a window.
   bool records() const { return !record.empty() || part.isPart() || !part.checkpoint.empty(); }
   int capture = -1;  ///< the frame that RenderDoc captures; negative: none

@@ -78,8 +78,8 @@ void showScene(Ui& ui, WalkState& s) {
       "cannot be read, this scene stays.");
   if (button(ui, "load")) s.sceneToLoad = s.sceneText;
   ImGui::SameLine();
-  checkbox(ui, "on a ground", s.ground);
-  explain("Models without their own light get a grey floor when loaded here, in addition to our sun and sky.");
+  checkbox(ui, "on a floor", s.floor);
+  explain("Models without light of their own get a grey floor when loaded here, in addition to our sun and sky.");
   openMenu(ui, s, "shipped scenes", shippedScenes);
   openMenu(ui, s, "recent files", recentByName);
 }

@@ -80,7 +80,7 @@ struct WalkState {
   std::uint64_t sceneVersion = 1;  ///< incremented when lights or materials change
   std::string sceneText;  ///< of the panel's text field
   std::optional<std::filesystem::path> sceneToLoad;
-  bool ground = true;  ///< add a ground under loaded scenes without light of their own: bare models
+  bool floor = true;  ///< add the studio's floor under loaded scenes without light of their own
   float emissionFactor = 1.0f;
   bool movesLamps = false;  ///< by axes drawn in the picture
   std::vector<Material> materialsAsLoaded;

@@ -24,6 +24,7 @@
 #include "shared/paths.hpp"
 #include "scene/motion.hpp"
 #include "scene/scene_file.hpp"
+#include "scene/studio.hpp"
 #include "walk/window.hpp"
 
 #include <fmt/core.h>
@@ -255,6 +256,7 @@ int runWalk(WalkOptions options) {
   if (!options.record.empty() && fs::exists(options.record) && !fs::is_directory(options.record))
     throwBadInput("--record {}: is a file, expected a folder", options.record);
   Scene scene = loadScene(options.scene);
+  if (!options.noFloor && scene.studio) addFloor(scene);
   if (!options.keys.empty()) {
     setKeyFrames(scene, options.keys, false);
     finishMotion(scene);
@@ -309,6 +311,7 @@ Work addWalk(Command app) {
       app.addOption("--panel", options->panel,
                     "whether the panel is open at the start: on, off or auto (auto: on, but not with --json)"),
       {"on", "off", "auto"});
+  app.addFlag("--no-floor", options->noFloor, "models without light of their own: not on our grey floor");
   options->picture.declare(app);
   options->common.declare(app);
   app.setFooter(keysHelp() + "\n" + app.footer());

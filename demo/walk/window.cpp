@@ -11,7 +11,7 @@
 #include "gl/pass.hpp"
 #include "gl/read_pictures.hpp"
 #include "scene/motion.hpp"
-#include "walk/ground.hpp"
+#include "scene/studio.hpp"
 #include "walk/labels.hpp"
 #include "walk/panel.hpp"
 #include "shared/paths.hpp"
@@ -364,7 +364,7 @@ void WalkWindow::loadWantedScene() {
     const fs::path file = sceneFileOf(wanted.string());
     breathe("loading " + file.filename().string());
     auto scene = std::make_unique<Scene>(loadScene(file));
-    if (state_.ground && wantsGround(*scene)) addGround(*scene);
+    if (state_.floor && scene->studio) addFloor(*scene);
     Spline path = pathOf(*scene);
     RenderSettings settings = state_.sides[0].options.parse();
     settings.size = state_.sides[0].renderer->size();
@@ -400,7 +400,6 @@ void WalkWindow::loadWantedScene() {
     state_.path.follows = false;
     state_.camera.emplace(state_.scene->cameras.front(), 0.08 * glm::length(state_.scene->bounds.extent()));
     state_.exposure = state_.scene->exposure;
-    if (state_.scene->defaultSun) state_.meterWanted = true;  // no file sets an exposure
     host_.setTitle("Lucerna - " + state_.scene->name);
     state_.say(fmt::format("{}: {} triangles", state_.scene->name, state_.scene->triangleCount()));
     changed();
@@ -562,6 +561,33 @@ void WalkWindow::inspectPixel(const Compare::Inputs& inputs) {
   }
 }
 
+/// A stage's result or a count of the shown side, if one was chosen, instead of pictures.
+void WalkWindow::showDebugView(Compare::Inputs& inputs) {
+  const SideState& shown = state_.side();
+  if (!state_.stage.empty() && shown.renderer) {
+    for (const StagePicture& picture : shown.renderer->stagePictures()) {
+      if (picture.name != state_.stage) continue;
+      if (!stageView_) stageView_.emplace(programs_);
+      inputs.layout = Layout::one;
+      inputs.left = {
+          &stageView_->record(picture, state_.stageLayer, std::exp2(state_.stageFactor), state_.scene->bounds),
+          Show::values, nullptr};
+    }
+  }
+  if (state_.countView == CountView::none || !shown.renderer) {
+    state_.countViews.reset();
+  } else {
+    if (!state_.countViews)
+      state_.countViews = std::make_unique<CountViews>(context_, programs_, *state_.scene, shown.renderer->origin());
+    const Camera& camera = state_.camera->camera();
+    inputs.layout = Layout::one;
+    inputs.left = {&state_.countViews->record(state_.countView, camera,
+                                              shown.renderer->linesView(camera, state_.scene->bounds).clipFromWorld,
+                                              shown.renderer->size(), state_.countWhite),
+                   Show::values, nullptr};
+  }
+}
+
 void WalkWindow::compose() {
   SideState& shown = state_.side();
   const bool referenceThere =
@@ -609,28 +635,7 @@ void WalkWindow::compose() {
   }
   if (state_.magnifier && input_.cursor.x >= 0.0 && !(ui_ && drawsUi() && ui_->wantsMouse(input_)))
     inputs.magnifier = glm::vec2(input_.cursor);
-  if (stage) {
-    for (const StagePicture& picture : shown.renderer->stagePictures()) {
-      if (picture.name != state_.stage) continue;
-      if (!stageView_) stageView_.emplace(programs_);
-      inputs.layout = Layout::one;
-      inputs.left = {
-          &stageView_->record(picture, state_.stageLayer, std::exp2(state_.stageFactor), state_.scene->bounds),
-          Show::values, nullptr};
-    }
-  }
-  if (!counts) {
-    state_.countViews.reset();
-  } else {
-    if (!state_.countViews)
-      state_.countViews = std::make_unique<CountViews>(context_, programs_, *state_.scene, shown.renderer->origin());
-    const Camera& camera = state_.camera->camera();
-    inputs.layout = Layout::one;
-    inputs.left = {&state_.countViews->record(state_.countView, camera,
-                                              shown.renderer->linesView(camera, state_.scene->bounds).clipFromWorld,
-                                              shown.renderer->size(), state_.countWhite),
-                   Show::values, nullptr};
-  }
+  showDebugView(inputs);
   std::vector<Label> labels;
   if (!plain && inputs.left.radiance) {
     if (!ui_) ui_.emplace(programs_, host_, host_.contentScale());

@@ -52,6 +52,7 @@ class WalkWindow {
   void makeReference(double frameSeconds);
   bool allSettled() const;
   void compose();
+  void showDebugView(Compare::Inputs& inputs);
   void readPixel(const Compare::Inputs& inputs);
   void inspectPixel(const Compare::Inputs& inputs);
   void pace(Clock::time_point start);

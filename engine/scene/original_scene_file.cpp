@@ -149,7 +149,7 @@ Scene loadOriginalScene(const Value& root) {
   scene.file = root.file;
   scene.metresPerUnit = keys.scale / 1000.0;
   scene.sun.reset();
-  scene.defaultSun = false;
+  scene.defaultSun = scene.studio = false;
   scene.exposure = 1.0f;
   scene.spots.clear();
   scene.points = {keys.light};

@@ -190,6 +190,7 @@ struct Scene {
   glm::vec3 background{0.0f};  ///< radiance visible where there is neither surface nor environment; it lights nothing
   float exposure = 1.0f;  ///< multiplies radiance before tone mapping
   bool defaultExposure = false;  ///< no file has one: it is chosen for the view (setDefaultExposure)
+  bool studio = false;  ///< no file says how it is seen and lit: as scene/studio.hpp does
   std::filesystem::path keyFrames;  ///< the walk's camera path; empty: none named
   std::shared_ptr<SceneMotion> motion;  ///< scene/motion.hpp; null: nothing moves
   double time = 0.0;  ///< at which it is posed, seconds

@@ -1,9 +1,8 @@
 // What files leave out.
-// - No light, not even of emissive surfaces: a sun, over the shoulder of a view that we chose, otherwise slanted to
-// suit courtyards and halls; and its
-//   clear sky (set in loadScene, as the sun may still be turned).
-// - No camera: the first key of keyFrames/<stem>.txt if the repository has one, otherwise a view from outside that
-//   frames the bounding sphere.
+// - No light, not even of emissive surfaces: a sun. With a view that we chose too, that of the studio (studio.hpp) and
+//   its sky; otherwise slanted to suit courtyards and halls, with its clear sky (set in loadScene, as the sun may still
+//   be turned).
+// - No camera: the first key of keyFrames/<stem>.txt if the repository has one, otherwise the studio's view.
 // - Lamps far too weak or strong for an exposure of 1, since their units are arbitrary: another exposure, with a
 //   warning.
 #include "scene/scene_file.hpp"
@@ -14,6 +13,7 @@
 #include "scene/clear_sky.hpp"
 #include "scene/key_frames.hpp"
 #include "scene/motion.hpp"
+#include "scene/studio.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -24,14 +24,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double kDefaultFov = 50.0 * kPi / 180.0;
-
 /// Slanted, so that walls are lit too. In Crytek Sponza it reaches a quarter of the court's floor and the curtains on
 /// +z.
 const glm::dvec3 kDefaultSunDirection = glm::normalize(glm::dvec3(0.12, -1.0, 0.2));
-/// For the default view from outside: over its right shoulder, so that all visible sides of a box are lit, and also a
-/// sheet that faces +z.
-const glm::dvec3 kSunOverShoulder = glm::normalize(glm::dvec3(-0.3, -1.0, -0.6));
 const glm::vec3 kDefaultSunIrradiance(10.0f, 9.6f, 9.0f);
 /// Match that sun and its sky, some 12 W/unit^2: white stands at 0.4 * 0.8 * 12 / pi = 1.2 before the tone curve.
 const float kExposureOutside = 0.4f, kExposureInside = 3.0f;
@@ -63,28 +58,19 @@ double areaOf(const Scene& scene, const Mesh& mesh) {
 
 double strongest(const glm::vec3& v) { return static_cast<double>(std::max({v.x, v.y, v.z})); }
 
-/// Whether emissive surfaces are a scene's light rather than its pilot lamps: a thousandth of its area.
+/// Whether emissive surfaces are a scene's light rather than its pilot lamps: a thousandth of its area. What shines as
+/// white paper at most (1, as glTF has it without KHR_materials_emissive_strength) must meet other surfaces too.
 bool isLitByEmission(const Scene& scene) {
-  double all = 0.0, emissive = 0.0;
+  double all = 0.0, emissive = 0.0, most = 0.0;
   for (const Mesh& mesh : scene.meshes) {
     const Material& material = scene.materials[static_cast<std::size_t>(mesh.material)];
     const double area = areaOf(scene, mesh), emission = strongest(material.emission);
     all += area;
+    most = std::max(most, emission);
     if (emission > 0.0)
       emissive += area * (material.emissionTexture >= 0 ? emission / strongest(material.emissionScale) : 1.0);
   }
-  return emissive > 1e-3 * all;
-}
-
-Camera outsideView(const Bounds& bounds) {
-  Camera camera;
-  camera.name = "default";
-  camera.verticalFov = kDefaultFov;
-  camera.direction = -glm::normalize(glm::dvec3(0.5, 0.35, 1.0));
-  const double radius = 0.5 * glm::length(bounds.extent());
-  camera.position = bounds.centre() - camera.direction * (radius / std::sin(0.5 * kDefaultFov));
-  camera.up = glm::normalize(glm::dvec3(0.0, 1.0, 0.0) - camera.direction.y * camera.direction);
-  return camera;
+  return emissive > 1e-3 * all && (most > 1.0 || !glowsOutwards(scene));
 }
 
 }  // namespace
@@ -125,11 +111,13 @@ void setDefaultView(Scene& scene) {
     logWarning("{}: camera '{}' sees nothing of the scene; using the default view from outside", scene.file.string(),
                scene.cameras.front().name);
   if (!scene.cameras.empty() && !blind) return;
-  scene.cameras.insert(scene.cameras.begin(), outsideView(scene.bounds));
-  if (scene.defaultSun) scene.sun->direction = kSunOverShoulder;
+  scene.cameras.insert(scene.cameras.begin(), studioView(scene));
+  scene.studio = scene.defaultSun;
+  if (scene.studio) scene.sun->direction = studioSun(scene.cameras.front());
 }
 
 void useChosenView(Scene& scene) {
+  scene.studio = false;
   if (scene.defaultSun) scene.sun->direction = kDefaultSunDirection;
 }
 
@@ -141,7 +129,9 @@ void setDefaultExposure(Scene& scene, const Camera& camera) {
 }
 
 void setDefaultSky(Scene& scene) {
-  if (scene.defaultSun) scene.environment = Environment{glm::vec3(1.0f), clearSkyPicture({}, *scene.sun), 0.0};
+  if (!scene.defaultSun) return;
+  scene.environment =
+      Environment{glm::vec3(1.0f), scene.studio ? studioSky(*scene.sun) : clearSkyPicture({}, *scene.sun), 0.0};
 }
 
 void setExposureForLamps(Scene& scene) {

@@ -483,7 +483,7 @@ Scene loadSceneFile(const std::filesystem::path& file) {
   if (root.has("sun") || (scene.defaultSun && (root.has("spots") || root.has("points")))) {
     scene.sun = sun ? std::optional(sun->light) : std::nullopt;
     replace(SceneMotion::Part::sun);
-    scene.defaultSun = false;
+    scene.defaultSun = scene.studio = false;
     scene.defaultExposure = false;  // it belongs to the default sun
     scene.exposure = 1.0f;
   }
@@ -506,6 +506,7 @@ Scene loadSceneFile(const std::filesystem::path& file) {
   if (hasCameras) scene.cameras = json->camerasAt(scene, 0.0), replace(SceneMotion::Part::views);
   if (!keyFrames.empty()) setKeyFrames(scene, keyFrames, !hasCameras);
   if (hasCameras || !scene.keyFrames.empty()) useChosenView(scene);
+  if (root.has("environment")) scene.studio = false;
   if (!root.has("environment")) setDefaultSky(scene);
   else if (const Value environment = root.at("environment"); !environment.json.is_null())
     scene.environment = readEnvironment(environment, sun         ? sun

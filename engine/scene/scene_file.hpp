@@ -31,7 +31,7 @@ void useChosenView(Scene& scene);
 /// in the sun is just below white; 3 inside of them, so that surfaces lit by reflection alone are readable.
 void setDefaultExposure(Scene& scene, const Camera& camera);
 
-/// With the default sun: the clear sky for its current direction.
+/// With the default sun: the studio's sky (studio.hpp), or the clear sky for its current direction.
 void setDefaultSky(Scene& scene);
 
 /// Model files specify lamps in arbitrary units. If their light in the middle of the scene is far from what an exposure

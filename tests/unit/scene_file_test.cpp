@@ -2,6 +2,7 @@
 #include "base/angles.hpp"
 #include "base/image.hpp"
 #include "scene/clear_sky.hpp"
+#include "scene/studio.hpp"
 #include "scene/features.hpp"
 #include "scene/scene.hpp"
 #include "scene/scene_file.hpp"
@@ -232,13 +233,16 @@ TEST(SceneFile, TheDefaultSunHasItsSkyUnlessAnotherWordIsSaid) {
   const SceneFolder folder;
   const Scene scene = folder.load("");
   ASSERT_TRUE(scene.environment && scene.environment->picture);
-  EXPECT_EQ(scene.environment->picture->pixels, clearSkyPicture({}, *scene.sun).pixels);
+  EXPECT_TRUE(scene.studio);
+  EXPECT_TRUE(scene.environment->picture->pixels == studioSky(*scene.sun).pixels);
   const Scene viewed = folder.load(
       R"(, "camera": {"position": [0,0,5], "direction": [0,0,-1]})");  // the default sun stands elsewhere then
   ASSERT_NE(viewed.sun->direction, scene.sun->direction);
-  EXPECT_EQ(viewed.environment->picture->pixels, clearSkyPicture({}, *viewed.sun).pixels);
+  EXPECT_FALSE(viewed.studio);
+  EXPECT_TRUE(viewed.environment->picture->pixels == clearSkyPicture({}, *viewed.sun).pixels);
   EXPECT_TRUE(loadScene(folder.path() / "models/box.obj").environment);
   EXPECT_FALSE(folder.load(R"(, "environment": null)").environment);
+  EXPECT_FALSE(folder.load(R"(, "environment": null)").studio);
   EXPECT_FALSE(folder.load(R"(, "sun": {"direction": [0,-1,0], "irradiance": [1,1,1]})").environment);
   EXPECT_FALSE(folder.load(R"(, "sun": null)").environment);
   EXPECT_FALSE(folder.load(R"(, "points": [])").environment);
