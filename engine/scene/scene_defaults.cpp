@@ -3,7 +3,7 @@
 // suit courtyards and halls; and its
 //   clear sky (set in loadScene, as the sun may still be turned).
 // - No camera: the first key of keyFrames/<stem>.txt if the repository has one, otherwise a view from outside that
-//   frames the bounding sphere.
+//   frames the bounding sphere, where surfaces are the only light from the side that shows most of their fronts.
 // - Lamps far too weak or strong for an exposure of 1, since their units are arbitrary: another exposure, with a
 //   warning.
 #include "scene/scene_file.hpp"
@@ -76,11 +76,38 @@ bool isLitByEmission(const Scene& scene) {
   return emissive > 1e-3 * all;
 }
 
-Camera outsideView(const Bounds& bounds) {
+/// Area of the triangles' fronts as seen along a direction.
+double frontsSeenAlong(const Scene& scene, const glm::dvec3& direction) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i + 2 < scene.indices.size(); i += 3) {
+    const auto corner = [&](std::size_t k) { return glm::dvec3(scene.vertices[scene.indices[i + k]].position); };
+    sum += std::max(-0.5 * glm::dot(glm::cross(corner(1) - corner(0), corner(2) - corner(0)), direction), 0.0);
+  }
+  return sum;
+}
+
+/// From +z, +x, and above. Where surfaces are the only light, from the side that shows most of their fronts: a box that
+/// is lit within may be open on another side. Closed surfaces show as much from one side as from the opposite one.
+glm::dvec3 outsideDirection(const Scene& scene) {
+  const glm::dvec3 first = -glm::normalize(glm::dvec3(0.5, 0.35, 1.0));
+  if (scene.sun || !scene.spots.empty() || !scene.points.empty() || scene.environment) return first;
+  constexpr double kMore = 1.05;
+  glm::dvec3 best = first;
+  double most = kMore * frontsSeenAlong(scene, first);
+  for (const glm::dvec3& side : {glm::dvec3(-first.x, first.y, -first.z), glm::dvec3(first.z, first.y, -first.x),
+                                 glm::dvec3(-first.z, first.y, first.x)}) {
+    const double area = frontsSeenAlong(scene, side);
+    if (area > most) best = side, most = area;
+  }
+  return best;
+}
+
+Camera outsideView(const Scene& scene) {
+  const Bounds& bounds = scene.bounds;
   Camera camera;
   camera.name = "default";
   camera.verticalFov = kDefaultFov;
-  camera.direction = -glm::normalize(glm::dvec3(0.5, 0.35, 1.0));
+  camera.direction = outsideDirection(scene);
   const double radius = 0.5 * glm::length(bounds.extent());
   camera.position = bounds.centre() - camera.direction * (radius / std::sin(0.5 * kDefaultFov));
   camera.up = glm::normalize(glm::dvec3(0.0, 1.0, 0.0) - camera.direction.y * camera.direction);
@@ -125,7 +152,7 @@ void setDefaultView(Scene& scene) {
     logWarning("{}: camera '{}' sees nothing of the scene; using the default view from outside", scene.file.string(),
                scene.cameras.front().name);
   if (!scene.cameras.empty() && !blind) return;
-  scene.cameras.insert(scene.cameras.begin(), outsideView(scene.bounds));
+  scene.cameras.insert(scene.cameras.begin(), outsideView(scene));
   if (scene.defaultSun) scene.sun->direction = kSunOverShoulder;
 }
 
