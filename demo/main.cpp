@@ -7,7 +7,9 @@
 int main(int argc, char** argv) {
   using namespace lucerna::demo;
   if (const int code = startOther(argc, argv)) return code;
-  constexpr const char* kDescription = "Lucerna: real-time global illumination, measured.\nStart with: lucerna walk";
+  constexpr const char* kDescription =
+      "Lucerna: real-time global illumination, measured.\nStart with: lucerna walk; "
+      "lucerna help COMMAND describes a command";
   return runProgram({"lucerna", LUCERNA_VERSION, kDescription}, argc, argv, [](Command, Subcommands& commands) {
     commands.add("walk", "Walk through a scene along its camera path; without a window, write pictures and stage times",
                  addWalk);

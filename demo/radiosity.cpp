@@ -157,7 +157,8 @@ Work addGenerate(Command app) {
                 "of a scene: longest edge of the triangles in scene units (a 12th of the scene)")
       .positive();
   app.addOption("--triangles", options->triangles,
-                "of a scene: at most this many, by joining corners in cells of a grid; emissive ones stay")
+                "of a scene: at most this many, by longer edges (without --edge), and by joining corners in cells of a "
+                "grid; emissive ones stay")
       .range(4u, 100'000'000u);
   app.addFlag("--lights", options->lights,
               "of a scene: what surfaces reflect of sun, lamps and environment is their own emission");
@@ -291,7 +292,9 @@ RadSource loadRadSource(const std::string& file, std::optional<double> edge, std
   if (triangles) {
     PatchSettings patches;
     patches.longestEdge = source.edge;
-    source.model = coarserScene(Scene(scene), patches, *triangles);
+    const Scene whole = scene;
+    source.model = edge ? coarserScene(whole, patches, *triangles) : coarserSceneAndEdge(whole, patches, *triangles);
+    source.edge = source.model.longestEdge;
   }
   return source;
 }

@@ -122,6 +122,9 @@ int runRadiosityShow(const RadiosityShowOptions& options) {
   } else if (options.edge || options.triangles) {
     throwBadInput("--edge, --triangles: of the triangles of --scene SCENE, which is not given");
   }
+  if (isUnsolved(triangles) && !display.mesh)
+    logWarning("{}: no light is computed yet, so all but its sources is black: lucerna radiosity solve {} SOLVED",
+               options.file, options.file);
   Scene cameras;
   cameras.cameras = {overviewOf(triangles)};
   const Camera camera = chooseCamera(cameras, options.camera);

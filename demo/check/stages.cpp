@@ -51,7 +51,8 @@ Finding measureFrames(const Asked& asked, glm::ivec2 size, const UnitInput& inpu
   const auto longest = std::max_element(stages.begin(), stages.end(), [](const auto& a, const auto& b) {
     return (std::isnan(a.medianMs) ? 0.0 : a.medianMs) < (std::isnan(b.medianMs) ? 0.0 : b.medianMs);
   });
-  if (longest != stages.end()) finding.text += fmt::format("; {} {:.2f} ms", longest->name, longest->medianMs);
+  if (longest != stages.end() && !std::isnan(longest->medianMs))
+    finding.text += fmt::format("; {} {:.2f} ms", longest->name, longest->medianMs);
   finding.figures = {
       {"technique", asked.name},          {"size", {size.x, size.y}},      {"frames", ms.size()},
       {"median_ms", median(ms)},          {"p5_ms", percentile(ms, 0.05)}, {"p95_ms", percentile(ms, 0.95)},

@@ -281,9 +281,9 @@ int figures(const LabOptions& options) {
   const Lab& lab = findLab(options.lab);
   const auto host = options.common.makeHost(false);
   const gl::Context context;
-  const std::string seed = options.seed.empty() ? "example" : options.seed;
-  fmt::print("{}", figuresTable(lab, seed));
-  if (!options.pictures.empty()) expectedPictures(lab, seed, options.pictures);
+  // Of the example's seed alone: the figures of any other are a student's answers.
+  fmt::print("{}", figuresTable(lab, "example"));
+  if (!options.pictures.empty()) expectedPictures(lab, "example", options.pictures);
   return 0;
 }
 
@@ -335,9 +335,9 @@ void addLabs(Subcommands& commands) {
       .range(0, 1000000)
       .showDefault();
   addNonce(proveApp);
-  Command figuresApp = add("figures", "For authors: the numbers that a lab's README quotes", figures);
+  Command figuresApp =
+      add("figures", "For authors: the numbers that a lab's README quotes, of the seed example", figures);
   figuresApp.addOption("LAB", options->lab, "number of the lab").required();
-  addSeed(figuresApp, "default: example");
   figuresApp.addOption("--pictures", options->pictures, "DIR: also write the pictures shown in README.md");
 }
 

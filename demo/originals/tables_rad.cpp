@@ -29,7 +29,8 @@ namespace lucerna::demo::bench {
 namespace {
 
 constexpr int kSweeps = 7;
-constexpr const char* kPublishedOn = "GeForce 7600 GT";
+constexpr const char* kPublishedOn = "GeForce 7600GT";
+constexpr const char* kPublishedMachine = "Athlon X2 4600+, 2 GB, nVidia GeForce 7600GT with 256 MB (4.1)";
 
 // [RAD2008 tables 4.1 and 4.2]: minutes for a whole run, seconds per triangle.
 struct Published {
@@ -276,6 +277,7 @@ nlohmann::ordered_json measureRadTables(const gl::Context& context, gl::ProgramL
               kPublishedSolutions.size() * kViews.size() + 2 + kBoxes.size() * kWays.size());
   nlohmann::ordered_json json;
   const std::vector<std::string> notes{
+      fmt::format("Published on {}", kPublishedMachine), fmt::format("Here     on {}", renderer),
       fmt::format("Scale    {}: at most {} hemicubes or {:.0f} s a figure, of triangles spread evenly over the scene",
                   scale, most, mostSeconds),
       fmt::format("Whole    not run: {} sweeps over all triangles, computed from the rate (extrapolated); published "
@@ -283,7 +285,6 @@ nlohmann::ordered_json measureRadTables(const gl::Context& context, gl::ProgramL
                   kSweeps, kSweeps),
       "Scene    model 2; its measures are ours, its numbers of triangles within 2 % of the published"};
   json["notes"] = notes;
-  say(prints, "Renderer {}\n", renderer);
   for (const std::string& note : notes) say(prints, "{}\n", note);
 
   // Each published model at each view size: the rate, and the extrapolated total.

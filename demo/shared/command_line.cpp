@@ -10,6 +10,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstdint>
@@ -19,7 +20,9 @@
 #include <iostream>
 #include <map>
 #include <optional>
+#include <sstream>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
@@ -261,6 +264,32 @@ void checkNumbers(const CLI::App& app) {
   for (const CLI::App* command : app.get_subcommands()) checkNumbers(*command);
 }
 
+/// The command line's words, and those of LUCERNA_OPTIONS after them. "help COMMAND" is "COMMAND --help".
+std::vector<std::string> argumentsOf(int argc, char** argv) {
+  std::vector<std::string> arguments(argv + 1, argv + argc);
+  if (!arguments.empty() && arguments[0] == "help") {
+    arguments.erase(arguments.begin());
+    arguments.emplace_back("--help");
+    return arguments;
+  }
+  const char* more = std::getenv("LUCERNA_OPTIONS");
+  if (!more || (!arguments.empty() && arguments[0] == "tree")) return arguments;
+  std::istringstream words(more);
+  for (std::string word; words >> word;) arguments.push_back(word);
+  unsetenv("LUCERNA_OPTIONS");  // of this command, not of programs that it starts
+  return arguments;
+}
+
+/// Of "help": the words but the last, --help, must name a command.
+void checkCommand(CLI::App& app, const std::vector<std::string>& words) {
+  CLI::App* command = &app;
+  for (std::size_t i = 0; i + 1 < words.size(); ++i) {
+    const auto found = command->get_subcommands([&](const CLI::App* a) { return a->get_name() == words[i]; });
+    if (found.empty()) throwBadInput("help {}: no such command (lucerna --help lists them)", words[i]);
+    command = found.front();
+  }
+}
+
 }  // namespace
 
 int runProgram(const Program& program, int argc, char** argv,
@@ -270,7 +299,13 @@ int runProgram(const Program& program, int argc, char** argv,
   Subcommands commands{Command(app)};
   declare(Command(app), commands);
   try {
-    app.parse(argc, argv);
+    std::vector<std::string> arguments = argumentsOf(argc, argv);
+    if (argc > 1 && argv[1] == std::string_view("help")) checkCommand(app, arguments);
+    std::ranges::reverse(arguments);  // as CLI11 takes them
+    app.parse(arguments);
+  } catch (const Error& error) {
+    printError(error.what());
+    return error.exitCode();
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return flushed(app.exit(error));  // --help, --version
     std::string used;

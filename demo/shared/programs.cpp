@@ -68,7 +68,9 @@ bool isBelow(const std::string& path, std::string_view command) {
 }  // namespace
 
 int startOther(int argc, char** argv) {
-  const std::string_view command = argc > 1 ? argv[1] : "", subcommand = argc > 2 ? argv[2] : "";
+  const int first = argc > 1 && argv[1] == std::string_view("help") ? 2 : 1;
+  const std::string_view command = argc > first ? argv[first] : "",
+                         subcommand = argc > first + 1 ? argv[first + 1] : "";
   const auto other = std::find_if(kOthers.begin(), kOthers.end(), [&](const Other& o) {
     return o.command == command && (o.subcommand.empty() || o.subcommand == subcommand);
   });

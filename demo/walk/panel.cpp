@@ -383,6 +383,8 @@ void showHistogram(const WalkState& s, double most) {
                                         IM_COL32(255, 170, 40, 255));
 }
 
+std::string timeText(double ms) { return std::isnan(ms) ? "no time" : fmt::format("{:.2f} ms", ms); }
+
 void showTimings(Ui& ui, WalkState& s) {
   if (!s.frameMs.empty()) {
     const std::vector<double> ms(s.frameMs.begin(), s.frameMs.end());
@@ -413,11 +415,12 @@ void showTimings(Ui& ui, WalkState& s) {
       const double reused =
           stage.frames > 0 ? 1.0 - static_cast<double>(stage.ran) / static_cast<double>(stage.frames) : 0.0;
       ImGui::ProgressBar(static_cast<float>(ms / longest), {6.0f * ImGui::GetFontSize(), 0.0f},
-                         std::isnan(stage.medianMs) ? "no time" : fmt::format("{:.2f} ms", ms).c_str());
+                         timeText(stage.medianMs).c_str());
       ImGui::SameLine();
       line(stage.name + (reused > 0.0 ? fmt::format(", reused {:.0f} %", 100.0 * reused) : ""));
-      explain(fmt::format("median {:.3f} ms, 95 % {:.3f} ms of {} samples; ran in {} of {} frames; {} queries refused",
-                          stage.medianMs, stage.p95Ms, stage.count, stage.ran, stage.frames, stage.refused));
+      explain(fmt::format("median {}, 95 % {} of {} samples; ran in {} of {} frames; {} queries refused",
+                          timeText(stage.medianMs), timeText(stage.p95Ms), stage.count, stage.ran, stage.frames,
+                          stage.refused));
     }
   }
   if (button(ui, "begin again"))

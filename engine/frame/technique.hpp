@@ -59,6 +59,8 @@ class FrameTechnique {
   virtual void addStagePictures(std::vector<StagePicture>&) const {}
   /// Names of its own stages that this scene and these settings do without.
   virtual void addLeftOut(std::vector<std::string>&) const {}
+  /// Whether it shows media inside of bodies, if only as a preview.
+  virtual bool previewsMedia() const { return false; }
   /// Estimated iterations of its largest submission so far (gl/chunks.hpp), and of shading one pixel with its lookup.
   virtual double largestIterations() const { return 0.0; }
   virtual double iterationsOfPixel() const { return 0.0; }

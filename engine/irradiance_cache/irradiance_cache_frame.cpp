@@ -45,6 +45,11 @@ bool IrradianceCacheFrame::isNeeded(const RenderSettings& settings, const SceneF
   return IrradianceCache::isNeeded(features, settings.of<IrradianceCacheSettings>(), cachedLight(settings.component));
 }
 
+void IrradianceCacheFrame::prepare(RenderSettings& settings, const Scene& scene) {
+  settings.textures.boundaries =
+      !Reflections::showsClouds(analyse(scene), settings.of<IrradianceCacheSettings>().reflections);
+}
+
 IrradianceCacheFrame::IrradianceCacheFrame(const FrameParts& parts)
     : parts_(parts),
       maps_(lightMaps(parts)),
@@ -58,8 +63,11 @@ IrradianceCacheFrame::IrradianceCacheFrame(const FrameParts& parts)
 
 void IrradianceCacheFrame::makeReflections() {
   if (!Reflections::isNeeded(parts_.features, settings().reflections)) return;
+  std::optional<Bodies> bodies;
+  if (Bodies::isNeeded(parts_.features))
+    bodies.emplace(parts_.scene, parts_.traced.get().origin(), parts_.context.capabilities());
   reflections_.emplace(parts_.programs, parts_.scene, cache_.rayFlags(1, true), settings().reflections,
-                       parts_.settings.unmeasuredIterations);
+                       parts_.settings.unmeasuredIterations, std::move(bodies));
   reflections_->resize(visible_.size());
 }
 

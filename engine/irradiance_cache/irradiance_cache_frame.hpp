@@ -23,11 +23,15 @@ class IrradianceCacheFrame final : public FrameTechnique {
     return isNeeded(settings, features) && settings.of<IrradianceCacheSettings>().transport == CacheTransport::gather &&
            settings.component != Component::direct;
   }
+  /// Boundaries of clouds are not drawn where they are seen through.
+  static void prepare(RenderSettings& settings, const Scene& scene);
   explicit IrradianceCacheFrame(const FrameParts& parts);
 
   std::string surfaceShader() const override { return "irradiance_cache/surface.frag"; }
   gl::ShaderFlags surfaceFlags() const override {
-    return gl::with(IrradianceCache::lookupFlags(cache_.settings()), {{"INDIRECT_SPECULAR", reflections_.has_value()}});
+    return gl::with(IrradianceCache::lookupFlags(cache_.settings()),
+                    {{"INDIRECT_SPECULAR", reflections_ && parts_.features.specular},
+                     {"BEHIND_MEDIA", Reflections::showsClouds(parts_.features, settings().reflections)}});
   }
   void resize() override;
   bool follow(const SceneChange& change) override;
@@ -45,6 +49,7 @@ class IrradianceCacheFrame final : public FrameTechnique {
   void addShares(const InspectedPixel& pixel, PixelInspection& answer) override;
   void addStagePictures(std::vector<StagePicture>& pictures) const override;
   void addLeftOut(std::vector<std::string>& names) const override;
+  bool previewsMedia() const override { return reflections_ && Bodies::isNeeded(parts_.features); }
   double largestIterations() const override {
     return std::max(cache_.mostIterations(), reflections_ ? reflections_->largestIterations() : 0.0);
   }

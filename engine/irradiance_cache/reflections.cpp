@@ -3,21 +3,26 @@
 #include "gl/pass.hpp"
 #include "shared/bindings.h"
 
+#include <utility>
+
 namespace lucerna {
 
 namespace {
 constexpr int kReflectionGroup = 8;
 constexpr double kRaysOfEach = 4.0;  ///< on average: it passes mirrors and glass, and lamps are looked for at its end
+constexpr double kRaysThroughMedia = 12.0;  ///< with the boundaries and collisions of a body or cloud
 }  // namespace
 
 Reflections::Reflections(gl::ProgramLibrary& programs, const Scene& scene, const gl::ShaderFlags& flags, int rays,
-                         double unmeasured)
+                         double unmeasured, std::optional<Bodies> bodies)
     : rays_(rays),
       lamps_((scene.sun ? 1 : 0) + static_cast<int>(scene.spots.size() + scene.points.size())),
+      bodies_(std::move(bodies)),
       chunks_(unmeasured),
       program_(&programs.loadCompute(
           "cache reflections", "irradiance_cache/reflect.comp",
-          gl::with(flags, {{"FRESNEL_AMPLITUDES", 0}, {"FRESNEL_SCHLICK", 0}, {"LAMPS", lamps_}}))) {}
+          gl::with(gl::with(flags, {{"FRESNEL_AMPLITUDES", 0}, {"FRESNEL_SCHLICK", 0}, {"LAMPS", lamps_}}),
+                   bodies_ ? bodies_->flags() : gl::ShaderFlags{{"BODIES", 0}, {"CLOUDS", 0}, {"GRIDS", 0}}))) {}
 
 void Reflections::resize(glm::ivec2 size) { radiance_ = gl::Texture("reflections", gl::Format::rgba32f, size); }
 
@@ -26,11 +31,13 @@ void Reflections::record(int sample, int samples, const std::function<void()>& b
   const gl::ComputePass pass("cache reflections", gl::Barrier::textureFetch);
   program_->use();
   bind();
+  if (bodies_) bodies_->bind(*program_);
   const int rays = (rays_ + samples - 1) / samples;
   program_->set("rays", rays);
   program_->set("pixelSample", sample);
   radiance_.bindImage(0, gl::Access::write);
-  const double iterations = (1.0 + kRaysOfEach * rays * (1 + lamps_)) * gl::kIterationsOfRay;
+  const double ofEach = bodies_ ? kRaysThroughMedia : kRaysOfEach;
+  const double iterations = (1.0 + ofEach * rays * (1 + lamps_)) * gl::kIterationsOfRay;
   chunks_.forEach(radiance_.size2d(), iterations, kReflectionGroup, [&](glm::ivec2 corner, glm::ivec2 size) {
     program_->set("firstPixel", corner);
     pass.dispatch(glm::ivec3(size, 1), glm::ivec3(kReflectionGroup, kReflectionGroup, 1));

@@ -5,19 +5,25 @@
 #include "gl/objects.hpp"
 #include "gl/picture_chunks.hpp"
 #include "gl/program.hpp"
+#include "irradiance_cache/bodies.hpp"
 #include "scene/features.hpp"
 #include "scene/scene.hpp"
 
 #include <functional>
+#include <optional>
 
 namespace lucerna {
 
 class Reflections {
  public:
-  static bool isNeeded(const SceneFeatures& features, int rays) { return features.specular && rays > 0; }
-  /// flags: of programs that trace rays and look up records. rays: per pixel.
+  static bool isNeeded(const SceneFeatures& features, int rays) {
+    return (features.specular && rays > 0) || showsClouds(features, rays);
+  }
+  /// Whether surfaces are seen through clouds, whose boundaries are then not drawn.
+  static bool showsClouds(const SceneFeatures& features, int rays) { return Bodies::hasClouds(features) && rays > 0; }
+  /// flags: of programs that trace rays and look up records. rays: per pixel. bodies: if the scene has media.
   Reflections(gl::ProgramLibrary& programs, const Scene& scene, const gl::ShaderFlags& flags, int rays,
-              double unmeasured);
+              double unmeasured, std::optional<Bodies> bodies);
 
   void resize(glm::ivec2 size);
   /// For the view that the records were last updated for. sample: number of the pixels' sample, each of which takes
@@ -25,10 +31,11 @@ class Reflections {
   void record(int sample, int samples, const std::function<void()>& bind);
   void bindForShading() const;  ///< unit UNIT_REFLECTED for shaders/irradiance_cache/surface.frag
   double largestIterations() const { return chunks_.largestIterations(); }
-  std::size_t gpuBytes() const { return radiance_.bytes(); }
+  std::size_t gpuBytes() const { return radiance_.bytes() + (bodies_ ? bodies_->gpuBytes() : 0); }
 
  private:
   int rays_, lamps_;
+  std::optional<Bodies> bodies_;
   gl::PictureChunks chunks_;
   gl::Texture radiance_;  ///< W per square scene unit and steradian, of each pixel
   const gl::Program* program_;

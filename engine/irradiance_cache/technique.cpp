@@ -72,7 +72,8 @@ TechniqueEntry technique() {
           .model = cacheModel,
           .isNeeded = IrradianceCacheFrame::isNeeded,
           .make = makeCache,
-          .readsLightMaps = IrradianceCacheFrame::takesMaps};
+          .readsLightMaps = IrradianceCacheFrame::takesMaps,
+          .prepare = IrradianceCacheFrame::prepare};
 }
 
 }  // namespace irradiance_cache

@@ -168,8 +168,10 @@ bool Renderer::follow(const gl::Context& context, gl::ProgramLibrary& programs, 
 void Renderer::warnOfWhatIsLeftOut(const TechniqueEntry& technique) const {
   const bool lacksLight = !technique.model(settings_).environmentAndEmission;
   if (features_.emission && !features_.anyLight() && lacksLight)
-    logWarning("technique {}: emissive surfaces light nothing, and nothing else does ({} support it)", technique.name,
-               fmt::join(environmentTechniques(), ", "));
+    logWarning(
+        "technique {}: emissive surfaces light nothing, and nothing else does, so all but them is black ({} support "
+        "it)",
+        technique.name, fmt::join(environmentTechniques(), ", "));
   const gl::ShaderFlags flags = technique_ ? technique_->surfaceFlags() : gl::ShaderFlags{};
   const bool reflects = std::ranges::count(flags, std::pair<std::string, int>("INDIRECT_SPECULAR", 1)) > 0;
   const std::vector<std::string> reflecting = namesOfDrawn(gpuScene_->scene(), isMostlyReflection);
@@ -180,9 +182,21 @@ void Renderer::warnOfWhatIsLeftOut(const TechniqueEntry& technique) const {
   const std::vector<std::string> bodies = namesOfDrawn(gpuScene_->scene(), [](const Material& material) {
     return material.bsdf == Bsdf::dielectric && material.interior >= 0;
   });
-  if (!bodies.empty())
-    logWarning("technique {}: the medium inside of a body, its colour too, is left out: {} (path draws it)",
+  if (!bodies.empty() && technique_ && technique_->previewsMedia())
+    logWarning("technique {}: media are a preview, which scatter as surfaces do: {} (path draws them as they are)",
                technique.name, fmt::join(bodies, ", "));
+  else if (!bodies.empty())
+    logWarning(
+        "technique {}: the medium inside of a body, its colour too, is left out: {} (irradiance-cache previews it, "
+        "path "
+        "draws it)",
+        technique.name, fmt::join(bodies, ", "));
+  const std::vector<std::string> boundaries = namesOfDrawn(gpuScene_->scene(), [](const Material& material) {
+    return material.bsdf == Bsdf::none && material.interior >= 0;
+  });
+  if (settings_.textures.boundaries && !boundaries.empty())
+    logWarning("technique {}: the boundary of a medium is drawn, and matt: {} (path draws the medium)", technique.name,
+               fmt::join(boundaries, ", "));
   if (features_.environment && lacksLight)
     logWarning("technique {}: the environment lights nothing ({} support it)", technique.name,
                fmt::join(environmentTechniques(), ", "));
@@ -248,7 +262,8 @@ SurfacePrograms Renderer::surfacePrograms(gl::ProgramLibrary& programs, bool ins
                                {"PLAIN_LAMPS", localLights_ && localLights_->hasPlainLamps()},
                                {"EMISSION", features_.emission && showsRest},
                                {"INSPECTED", inspected}});
-    for (const char* flag : {"HAZE", "SHOW_REFUSED", "INDIRECT_SPECULAR"})  // 0 unless the technique sets them
+    for (const char* flag :
+         {"HAZE", "SHOW_REFUSED", "INDIRECT_SPECULAR", "BEHIND_MEDIA"})  // 0 unless the technique sets them
       if (std::none_of(own.begin(), own.end(), [&](const auto& o) { return o.first == flag; }))
         flags.push_back({flag, 0});
     return &programs.loadRaster(name, "forward/surface.vert", shader, gl::with(flags, own));

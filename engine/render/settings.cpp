@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "base/nearest_words.hpp"
 #include "render/techniques.hpp"
 
 #include <fmt/ranges.h>
@@ -96,7 +97,8 @@ SettingAssignment parseAssignment(std::string_view assignment, std::string_view 
   std::vector<std::string_view> keys;
   for (const Setting& s : allSettings())
     if (!only || s.cost == *only) keys.push_back(s.key);
-  throwBadInput("{}{}: unknown key; expected one of {}", where, assignment, fmt::join(keys, ", "));
+  throwBadInput("{}{}: unknown key; nearest: {} (lucerna info --settings lists all)", where, assignment,
+                fmt::join(nearestWords(assignment.substr(0, equals), keys), ", "));
 }
 
 namespace {

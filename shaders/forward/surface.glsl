@@ -8,6 +8,8 @@
 //     of sun, spot and omnidirectional lights: the irradiance cache includes the sky and emissive surfaces
 // normal: for shading, possibly normal-mapped; meshNormal: the mesh's own; both on the viewer's side. And with a flag:
 //   INDIRECT_SPECULAR: vec3 indirectSpecular(position, normal, toCamera, coat)   radiance that the coat reflects of it
+//   BEHIND_MEDIA: vec4 mediaInFront()   what media before the surface show, what the surface reflects included, and the
+//     share of its other light that passes them
 //   SHOW_REFUSED: bool indirectIsRefused()   whether to paint the pixel red
 #include "lib/frame.glsl"
 #include "lib/sh.glsl"
@@ -174,10 +176,16 @@ void main() {
 #endif
 #if INDIRECT_SPECULAR
   if (coat.alpha == 0.0) result = vec3(0.0);  // mirrors and glass have no base
+#if !BEHIND_MEDIA
   if (isCoated) add(result, indirectSpecular(vPosition, normal, toCamera, coat), INSPECTED_GLOSSY);
+#endif
 #endif
 #if EMISSION
   add(result, emitted, INSPECTED_EMISSION);
+#endif
+#if BEHIND_MEDIA
+  vec4 media = mediaInFront();
+  result = media.a * result + media.rgb;
 #endif
 #if INSPECTED
   record(INSPECTED_POSITION, vec4(vPosition, 1.0));

@@ -3,6 +3,7 @@
 // surface. That one shows its emission, the lamps that reach it and the irradiance of the records around it, as if
 // matte. Where there are none, paths go on. Beyond all surfaces is the environment.
 // Rough coats reflect the pixel's own irradiance, as if light came from all sides alike: their lobe is as wide.
+// Media are a preview (body.glsl). Alpha is the share of the pixel's surface that clouds before it let through.
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "shared/bindings.h"
 #include "shared/path_tracer.h"
@@ -17,17 +18,24 @@ layout(std140, binding = BLOCK_CACHE_PATHS) uniform PathBlock { PathConstants tr
 #include "lib/spot.glsl"
 #include "irradiance_cache/lookup.glsl"
 #include "irradiance_cache/seen.glsl"
+#if BODIES || CLOUDS
+#include "irradiance_cache/body.glsl"
+#endif
 layout(binding = 0) writeonly restrict uniform image2D reflected;
 uniform ivec2 firstPixel;
 uniform int rays;         // per sample of a pixel
 uniform int pixelSample;  // its number: each draws other random numbers
-#if LAMPS
+#if CLOUDS
+#include "rays/lights.glsl"
+#define lamps lights
+#elif LAMPS
 layout(std430, binding = 4) readonly restrict buffer LampBlock { PathLight lamps[]; };  // the first LAMPS
 #endif
 
 const float kRays = 0.25, kNoRays = 0.5;  // alpha up to which rays alone show a coat, and from which none do
-const uint kMostSurfaces = 12u;           // along a ray
+const uint kMostSurfaces = 12u + 12u * uint(BODIES) + 24u * uint(CLOUDS);  // and collisions, along a ray
 const uint kMostBounces = 4u;             // beyond records
+const uint kPurposeBody = 5u, kPurposeCloud = 6u, kPurposeCloudWay = 7u, kPurposeCloudLight = 8u;
 
 bool counts(uint scatterings) { return scatterings >= tracer.minScatterings && scatterings <= tracer.maxScatterings; }
 
@@ -53,6 +61,39 @@ vec3 lampIrradiance(Surface surface, uint triangle) {
   return sum;
 }
 
+#if CLOUDS
+// Radiance that a point in a cloud scatters of one light.
+vec3 lightIn(vec3 place, PathNumbers numbers, uint event) {
+  vec3 arriving = vec3(0.0);
+#if NEXT_EVENT
+  LightSample light;
+  if (!sampleLight(place, unitFloat(randomWords(numbers, event, kPurposeLight).xy),
+                   randomWords(numbers, event, kPurposePick), light))
+    return arriving;
+  arriving = light.value / (4.0 * kPi);
+  int cloud = cloudAround;
+  uint triangle = kNoHit;
+  vec3 from = place;
+  float reach = light.infinite ? 1e30 : (1.0 - 1e-4) * distance(light.end, place);
+  for (uint k = 0u; k < kMostBounces && any(greaterThan(arriving, vec3(0.0))); ++k) {  // through matched boundaries
+    Hit hit = closestHit(Ray(from, 0.0, light.direction, 3e38), triangle);
+    float way = min(hit.t, reach);
+    uvec4 words = randomWords(numbers, kMostBounces * event + k, kPurposeCloudLight);
+    if (collides(from, light.direction, words, way, arriving)) arriving = vec3(0.0);
+    if (hit.t >= reach || hit.triangle == kNoHit) break;
+    Surface surface = surfaceAt(hit.triangle, hit.barycentrics, light.direction);
+    if (bodies[surface.material].kind != BODY_CLOUD) arriving = vec3(0.0);
+    cloudAround = surface.front ? int(surface.material) : -1;
+    triangle = hit.triangle;
+    from = offsetRay(surface.position, -surface.geometricNormal, surface.magnitude);
+    reach -= hit.t;
+  }
+  cloudAround = cloud;
+#endif
+  return arriving;
+}
+#endif
+
 // Whether a ray passes on at a surface, as at a mirror. Sets its new direction, and the side it leaves on.
 bool passes(Surface surface, bool mirrors, inout vec3 throughput, inout vec3 direction, out float side) {
   PathMaterial material = materials[surface.material];
@@ -61,12 +102,32 @@ bool passes(Surface surface, bool mirrors, inout vec3 throughput, inout vec3 dir
     side = -1.0;
     return true;
   }
+#if CLOUDS
+  if (bodies[surface.material].kind == BODY_CLOUD) {
+    cloudAround = surface.front ? int(surface.material) : -1;
+    side = -1.0;
+    return true;
+  }
+#endif
   vec3 normal = dot(surface.normal, direction) < 0.0 ? surface.normal : surface.geometricNormal;
   float cosI = min(-dot(direction, normal), 1.0), cosT;
   if (material.kind == PATH_MIRROR || (material.kind == PATH_CONDUCTOR && material.roughness == 0.0)) {
     throughput *= material.kind == PATH_MIRROR ? material.specular : schlick(material.specular, cosI);
   } else if (material.kind == PATH_DIELECTRIC) {
+#if BODIES
+    ivec4 before = aroundRay;
+    int here = bodyAround();
+    if (surface.front) enterBody(int(surface.material));
+    else leaveBody(int(surface.material));
+    int beyond = bodyAround();
+    float eta = iorOf(here) / iorOf(beyond);
+    if (here == beyond || eta == 1.0) {
+      side = -1.0;
+      return true;
+    }
+#else
     float eta = surface.front ? 1.0 / material.ior : material.ior;
+#endif
     float reflectance = fresnelDielectric(cosI, eta, cosT);
     if (mirrors) throughput *= reflectance;
     else if (reflectance < 1.0) {
@@ -75,6 +136,9 @@ bool passes(Surface surface, bool mirrors, inout vec3 throughput, inout vec3 dir
       side = -1.0;
       return true;
     }
+#if BODIES
+    aroundRay = before;
+#endif
   } else {
     return false;
   }
@@ -83,13 +147,78 @@ bool passes(Surface surface, bool mirrors, inout vec3 throughput, inout vec3 dir
   return true;
 }
 
+#if BODIES
+// Where light falls onto the body around the ray: what its medium scatters shows it.
+struct Entry {
+  vec3 light;  // irradiance over pi
+  bool isKnown;
+  Surface surface;
+};
+Entry entry;
+
+// At a surface that a ray has refracted at, from outside.
+void enterThrough(Surface surface, uint triangle) {
+  entry.surface = surface;
+  entry.light = (cachedIrradiance(surface.position + cache.rayOrigin, surface.normal, entry.isKnown) +
+                 lampIrradiance(surface, triangle)) / kPi;
+}
+#endif
+
 // Radiance along a ray that has left a surface of the pixel; scatterings: so far.
-vec3 radianceAlong(Ray ray, uint triangle, vec3 throughput, uint scatterings, PathNumbers numbers) {
+vec3 radianceAlong(Ray ray, uint triangle, vec3 throughput, uint scatterings, PathNumbers numbers, bool isFromCloud) {
   vec3 sum = vec3(0.0);
   bool last = false;  // the ray only collects what shines at its end
   uint bounces = 0u;
+#if CLOUDS
+  bool isSampled = isFromCloud;  // what shines at its end is found by lightIn
+#endif
   for (uint k = 0u; k < kMostSurfaces; ++k) {
     Hit hit = closestHit(ray, triangle);
+#if CLOUDS
+    // A cloud on the way
+    float distance = min(hit.t, 1e30);
+    if (collides(ray.origin, ray.direction, randomWords(numbers, 1u + k, kPurposeCloud), distance, throughput)) {
+      ++scatterings;
+      if (last || scatterings > tracer.maxScatterings) break;
+      vec3 place = ray.origin + distance * ray.direction;
+      if (counts(scatterings)) sum += throughput * lightIn(place, numbers, 1u + k);
+      ray = Ray(place, 0.0, isotropicDirection(unitFloat(randomWords(numbers, 1u + k, kPurposeCloudWay).xy)), 3e38);
+      triangle = kNoHit;
+      isSampled = NEXT_EVENT != 0;
+      continue;
+    }
+#endif
+#if BODIES
+    // The medium of the body that the ray is in
+    int body = bodyAround();
+    if (body >= 0 && bodies[body].kind == BODY_MEDIUM) {
+      vec3 through = exp(-bodies[body].extinction * min(hit.t, 1e30)),
+           scattered = (1.0 - through) * bodies[body].reflectance;
+      if (entry.isKnown) {
+        if (counts(scatterings + 1u)) sum += throughput * scattered * entry.light;
+        throughput *= through;
+      } else {
+        // Where no record is known the path goes on from there, as often as it matters.
+        float stopped = scattered.r + scattered.g + scattered.b, passed = through.r + through.g + through.b,
+              share = stopped / max(stopped + passed, 1e-20);
+        if (randomPair(numbers, 1u + k, kPurposeBody).x < share) {
+          throughput *= scattered / share;
+          if (++scatterings > tracer.maxScatterings || ++bounces > kMostBounces) break;
+          if (counts(scatterings)) sum += throughput * entry.light;
+          aroundRay = ivec4(-1);
+          vec3 outwards = cosineSample(entry.surface.normal, randomPair(numbers, 1u + k, kPurposeScatter));
+          if (!(dot(outwards, entry.surface.geometricNormal) > 0.0)) break;
+          ray = Ray(offsetRay(entry.surface.position, entry.surface.geometricNormal, entry.surface.magnitude), 0.0,
+                    outwards, 3e38);
+          triangle = kNoHit;
+          continue;
+        }
+        throughput *= through / (1.0 - share);
+      }
+    }
+#endif
+
+    // What is at its end
     if (hit.triangle == kNoHit) {
 #if ENVIRONMENT
       if (counts(scatterings)) sum += throughput * environmentRadiance(ray.direction);
@@ -98,10 +227,15 @@ vec3 radianceAlong(Ray ray, uint triangle, vec3 throughput, uint scatterings, Pa
     }
     Surface surface = surfaceAt(hit.triangle, hit.barycentrics, ray.direction);
     triangle = hit.triangle;
-#if EMISSION
+#if EMISSION && CLOUDS
+    if (counts(scatterings) && !isSampled) sum += throughput * emissionAt(surface.material, triangle, hit.barycentrics);
+#elif EMISSION
     if (counts(scatterings)) sum += throughput * emissionAt(surface.material, triangle, hit.barycentrics);
 #endif
     if (last) break;
+#if CLOUDS
+    isSampled = isSampled && bodies[surface.material].kind == BODY_CLOUD;
+#endif
     float side;
     vec3 direction = ray.direction;
     if (!passes(surface, false, throughput, direction, side)) {
@@ -121,6 +255,9 @@ vec3 radianceAlong(Ray ray, uint triangle, vec3 throughput, uint scatterings, Pa
       if (!(dot(direction, surface.geometricNormal) > 0.0)) break;
     } else if (materials[surface.material].kind != PATH_NONE) {
       ++scatterings;
+#if BODIES
+      if (side < 0.0 && surface.front && bodyAround() >= 0) enterThrough(surface, triangle);
+#endif
     }
     ray = Ray(offsetRay(surface.position, side * surface.geometricNormal, surface.magnitude), 0.0, direction, 3e38);
   }
@@ -136,14 +273,25 @@ vec3 reflectedBy(Surface surface, uint triangle, vec3 view, PathNumbers numbers)
   if (isSmooth) {
     bool isGlass = material.kind == PATH_DIELECTRIC;
     for (int way = 0; way < 2; ++way) {
+#if CLOUDS
+      if (way == 0 && bodies[surface.material].kind == BODY_CLOUD) continue;  // nothing is reflected
+      cloudAround = -1;
+#endif
       if (way == 1 && !isGlass) break;
       vec3 throughput = vec3(1.0), direction = view;
       float side;
+#if BODIES
+      aroundRay = ivec4(-1);
+#endif
       if (!passes(surface, way == 0, throughput, direction, side)) return sum;
       if (isGlass && way == 1 && side > 0.0) break;  // total reflection has been counted
+#if BODIES
+      if (side < 0.0 && bodyAround() >= 0) enterThrough(surface, triangle);
+      else aroundRay = ivec4(-1);
+#endif
       vec3 start = offsetRay(surface.position, side * surface.geometricNormal, surface.magnitude);
       sum += radianceAlong(Ray(start, 0.0, direction, 3e38), triangle, throughput, 1u,
-                           PathNumbers(numbers.pixel, 2u * numbers.sampleIndex + uint(way), numbers.seed));
+                           PathNumbers(numbers.pixel, 2u * numbers.sampleIndex + uint(way), numbers.seed), false);
     }
     return sum;
   }
@@ -173,26 +321,47 @@ vec3 reflectedBy(Surface surface, uint triangle, vec3 view, PathNumbers numbers)
     vec3 throughput = ofRays * facets / (pdf * float(count)) * coatFresnel(coat, clamp(dot(o, h), 0.0, 1.0));
     Ray ray = Ray(offsetRay(surface.position, surface.geometricNormal, surface.magnitude), 0.0, direction, 3e38);
     uint number = numbers.sampleIndex * uint(rays) + uint(i);
-    sum += radianceAlong(ray, triangle, throughput, 1u, PathNumbers(numbers.pixel, number, numbers.seed));
+    sum += radianceAlong(ray, triangle, throughput, 1u, PathNumbers(numbers.pixel, number, numbers.seed), false);
   }
 #endif
   return sum;
 }
+
+#if GRIDS
+// Whether light along the pixel's ray collides in a cloud before its surface; then its radiance.
+bool cloudBefore(vec3 eye, vec3 view, float distance, PathNumbers numbers, out vec3 radiance) {
+  vec3 throughput = vec3(1.0);
+  radiance = vec3(0.0);
+  if (!collides(eye, view, randomWords(numbers, 0u, kPurposeCloud), distance, throughput)) return false;
+  vec3 place = eye + distance * view;
+  if (counts(1u)) radiance = throughput * lightIn(place, numbers, 0u);
+  Ray ray = Ray(place, 0.0, isotropicDirection(unitFloat(randomWords(numbers, 0u, kPurposeCloudWay).xy)), 3e38);
+  radiance += radianceAlong(ray, kNoHit, throughput, 1u, numbers, NEXT_EVENT != 0);
+  return true;
+}
+#endif
 
 void main() {
   ivec2 pixel = firstPixel + ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(pixel, tracer.picture.xy))) return;
   int index = pixel.y * tracer.picture.x + pixel.x;
   vec3 sum = vec3(0.0);
+  float passed = 1.0;
   Hit hit;
   Surface surface;
   if (seenAt(index, hit, surface)) {
     vec3 eye, view;
     rayOf(index, eye, view);
-#if NORMAL_MAPS
-    applyNormalMap(surface, hit.triangle);
+#if GRIDS
+    if (cloudBefore(eye, view, hit.t, PathNumbers(uint(index), uint(pixelSample), tracer.seed), sum)) passed = 0.0;
+    else
 #endif
-    sum = reflectedBy(surface, hit.triangle, view, PathNumbers(uint(index), uint(pixelSample), tracer.seed));
+    {
+#if NORMAL_MAPS
+      applyNormalMap(surface, hit.triangle);
+#endif
+      sum = reflectedBy(surface, hit.triangle, view, PathNumbers(uint(index), uint(pixelSample), tracer.seed));
+    }
   }
-  imageStore(reflected, pixel, vec4(sum, 0.0));
+  imageStore(reflected, pixel, vec4(sum, passed));
 }

@@ -6,7 +6,10 @@ vec3 indirectIrradiance(vec3 position, vec3 normal, vec3 meshNormal) {
   bool found;
   return cachedIrradiance(position, meshNormal, found);
 }
-#if INDIRECT_SPECULAR
+#if BEHIND_MEDIA
+layout(binding = UNIT_REFLECTED) uniform sampler2D reflections;
+vec4 mediaInFront() { return texelFetch(reflections, ivec2(gl_FragCoord.xy), 0); }
+#elif INDIRECT_SPECULAR
 #include "lib/coat.glsl"
 layout(binding = UNIT_REFLECTED) uniform sampler2D reflections;
 vec3 indirectSpecular(vec3 position, vec3 normal, vec3 toCamera, Coat coat) {

@@ -22,6 +22,7 @@ TEST(BenchRad, TablesHoldWhatWasPublishedAndWhatItIsHere) {
   ASSERT_EQ(result.exitCode, 0) << result.err;
   const nlohmann::json json = nlohmann::json::parse(std::ifstream(file));
   EXPECT_NE(result.out.find("extrapolated"), std::string::npos);
+  EXPECT_NE(result.out.find("GeForce 7600GT with 256 MB"), std::string::npos);
   // Published, of [RAD2008 tables 4.1 and 4.2].
   const std::map<std::pair<std::string, std::string>, double> published{
       {{"4.1", "100x100, 26360 triangles"}, 280.0 / 60.0},   {{"4.1", "200x200, 26360 triangles"}, 525.0 / 60.0},

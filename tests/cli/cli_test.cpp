@@ -68,6 +68,27 @@ TEST_F(CommandLine, HelpListsEverySubcommandAndTheirOptions) {
   }
 }
 
+TEST_F(CommandLine, HelpOfACommandIsItsOptions) {
+  for (const std::string command : {"", "render", "radiosity solve", "bench error", "lab start"}) {
+    const RunResult help = RUN_LUCERNA("help " + command);
+    EXPECT_EQ(help.exitCode, 0) << help.err;
+    EXPECT_EQ(help.out, RUN_LUCERNA(command + " --help").out) << command;
+  }
+  const RunResult unknown = RUN_LUCERNA("help rendr");
+  EXPECT_EQ(unknown.exitCode, 2);
+  EXPECT_NE(unknown.err.find("rendr: no such command"), std::string::npos) << unknown.err;
+}
+
+TEST_F(CommandLine, OptionsOfTheEnvironmentFollowThoseOfTheCommand) {
+  const RunResult first = run("LUCERNA_OPTIONS='--size 24x12 --quiet' '" LUCERNA_BINARY "' render '" + scene() +
+                              "' --technique direct -o '" + path("small.png") + "'");
+  ASSERT_EQ(first.exitCode, 0) << first.err;
+  EXPECT_EQ(first.out, "");
+  const lucerna::Bitmap picture = lucerna::readBitmap(path("small.png"));
+  EXPECT_EQ(picture.width, 24);
+  EXPECT_EQ(picture.height, 12);
+}
+
 TEST_F(CommandLine, InfoReportsHostAndScene) {
   const RunResult result = RUN_LUCERNA("info " + scene() + " --json " + path("info.json"));
   ASSERT_EQ(result.exitCode, 0) << result.err;

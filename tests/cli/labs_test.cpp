@@ -113,6 +113,12 @@ TEST(LabFalseAlarms6, Hemicubes) { countFalseAlarms(6); }
 TEST(LabFalseAlarms7, Paths) { countFalseAlarms(7); }
 TEST(LabFalseAlarms8, Media) { countFalseAlarms(8); }
 
+TEST(LabReadme, FiguresOfAnotherSeedAreNotTold) {
+  const RunResult refused = RUN_LUCERNA("lab figures 1 --seed ada");  // they are that student's answers
+  EXPECT_EQ(refused.exitCode, 2);
+  EXPECT_EQ(refused.out, "");
+}
+
 TEST(LabReadme, FiguresAreThoseOfTheCheck) {
   for (const json& lab : labs()) {
     const std::string readme = readFileText(std::filesystem::path(LUCERNA_SOURCE_DIR) / "demo/labs" /

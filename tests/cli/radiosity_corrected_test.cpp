@@ -119,14 +119,14 @@ TEST_F(RadiosityCorrected, SettingsAndDeviationsAreTakenAlikeByRenderAndSolve) {
 }
 
 TEST_F(RadiosityCorrected, WrongInputIsOneClearLine) {
-  expectRefused(render("--set radiosity.patch=1"), {"radiosity.patch=1", "unknown key", "radiosity.edge"});
+  expectRefused(render("--set radiosity.patch=1"), {"radiosity.patch=1", "unknown key", "nearest: radiosity."});
   expectRefused(render("--set radiosity.resolution=x"), {"radiosity.resolution", "x"});
   expectRefused(render("--set radiosity.solver=magic"), {"magic", "cg", "jacobi"});
   expectRefused(render("--deviation radiosity.24-bit=on"), {"radiosity.24-bit", "--fidelity original"});
   expectRefused(solve("room.obj", "o.lit", "--deviation radiosity.24-bit=on"),
                 {"radiosity.24-bit", "--fidelity original"});
   expectRefused(solve("room.obj", "o.lit", "--set radiosity.mesh=on"),
-                {"radiosity.mesh", "unknown key", "radiosity.edge"});
+                {"radiosity.mesh", "unknown key", "nearest: radiosity."});
   expectRefused(solve("room.obj", "o.lit", "--set lpv.cells=8"), {"lpv.cells", "unknown key"});
   expectRefused(solve("room.obj", "o.lit", "--near-plane 0.1"), {"--near-plane", "no near plane"});
   expectRefused(solve("no.obj", "o.lit"), {"no.obj"});

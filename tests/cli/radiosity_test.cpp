@@ -77,13 +77,19 @@ TEST_F(Radiosity, AnySceneBecomesAFileOfTriangles) {
   }
   EXPECT_NEAR(floor, 16.0, 1e-4);
   EXPECT_NEAR(lamp, 4.0, 1e-4);
+  // Shown before it is solved it says why it is black; its mesh is meant to be.
+  const std::string unsolved = "radiosity show '" + path("room.rad") + "' -o '" + path("lit.png") + "' --size 32x24";
+  EXPECT_NE(RUN_LUCERNA(unsolved).err.find("room.rad: no light is computed yet"), std::string::npos);
+  EXPECT_EQ(RUN_LUCERNA(unsolved + " --mesh").err, "");
   ASSERT_EQ(run(solve(path("room.rad"), path("lit.rad"))).exitCode, 0);
   double received = 0.0;
   for (const RadTriangle& t : lucerna::readRadFile(path("lit.rad")))
     received += t.e == 0 ? t.b * lucerna::areaOf(t) : 0.0;
   EXPECT_GT(received, 0.0);
-  EXPECT_EQ(RUN_LUCERNA("radiosity show '" + path("lit.rad") + "' -o '" + path("lit.png") + "' --size 32x24").exitCode,
-            0);
+  const RunResult lit =
+      RUN_LUCERNA("radiosity show '" + path("lit.rad") + "' -o '" + path("lit.png") + "' --size 32x24");
+  EXPECT_EQ(lit.exitCode, 0) << lit.err;
+  EXPECT_EQ(lit.err, "");
   // What is no file of triangles is told, and how to make one.
   expectRefused(solve(path("room.obj"), path("x.rad")), {"room.obj", "scene (obj)", "radiosity generate FILE"});
   expectRefused("'" LUCERNA_BINARY "' radiosity show '" + path("room.obj") + "' -o '" + path("x.png") + "'",
@@ -114,6 +120,9 @@ TEST_F(Radiosity, LightsWithoutASurfaceAreHandedOver) {
   std::ofstream(path("sun.json"))
       << R"({"model": "floor.ply", "sun": {"direction": [0, -1, 1], "irradiance": [2, 4, 6]}})";
   ASSERT_EQ(RUN_LUCERNA(generate("sun.json") + " --lights").exitCode, 0);
+  // Its textures, too, whatever lights it.
+  const std::string show = "radiosity show '" + path("p.rad") + "' -o '" + path("p.png") + "' --size 16x12 --scene '";
+  EXPECT_EQ(RUN_LUCERNA(show + path("sun.json") + "' --edge 9").exitCode, 0);
   const double sent = lucerna::loadScene(path("sun.json")).materials[0].diffuse.x * 4.0 * std::sqrt(0.5);
   EXPECT_NEAR(1000.0 * json("g.json").at("exitance_of_step").get<double>(), sent, 1e-5);
   const std::vector<RadTriangle> triangles = lucerna::readRadFile(path("p.rad"));

@@ -145,7 +145,8 @@ TEST(Completions, FishCompletesCommandsOptionsAndValues) {
   EXPECT_EQ(offers("lucerna bench st"), Words{"stability"});
   EXPECT_EQ(offers("lucerna render --techniq"), Words{"--technique"});
   EXPECT_EQ(offers("lucerna render --technique p"), Words{"path"});
-  EXPECT_EQ(offers("lucerna walk --technique pat"), Words{});
+  EXPECT_EQ(offers("lucerna walk --technique pat"), Words{"path"});
+  EXPECT_EQ(offers("lucerna walk --technique patch"), Words{});
   EXPECT_EQ(offers("lucerna render --set lpv.casc"), Words{"lpv.cascades="});
   EXPECT_EQ(offers("lucerna render lucerna.f"), Words{"lucerna.fish"});
 }

@@ -88,6 +88,32 @@ TEST(CoarseScene, OfTrianglesThatBecomeOneTheLargestStays) {
     EXPECT_NEAR(patch.reflectance.x, patch.faceNormal.z > 0.0 ? 0.8 : 0.2, 1e-6) << patch.faceNormal.z;
 }
 
+TEST(CoarseScene, WhereTheEdgeIsFreeAFewLargeTrianglesAreCutIntoAsManyAsFit) {
+  const Scene room = cubeRoom(1, 0.5, 3.0);  // 12 triangles; a twentieth of its side would make thousands
+  PatchSettings patches;
+  patches.longestEdge = 0.05;
+  const CoarseScene same = coarserSceneAndEdge(room, patches, 500);
+  EXPECT_EQ(same.cell, 0.0);
+  EXPECT_EQ(same.scene.indices, room.indices);
+  patches.longestEdge = same.longestEdge;
+  const std::size_t count = makePatches(room, patches).patches.size();
+  EXPECT_LE(count, 500u);
+  EXPECT_GT(count, 100u);
+  EXPECT_GT(same.longestEdge, 0.05);
+}
+
+TEST(CoarseScene, WhereTheEdgeIsFreeAFineSceneIsJoinedAndItsEdgesAreSixCells) {
+  PatchSettings patches;
+  patches.longestEdge = 0.05;
+  const CoarseScene coarse = coarserSceneAndEdge(roomWithLamp(16), patches, 300);
+  EXPECT_GT(coarse.cell, 1.0 / 16.0);
+  EXPECT_NEAR(coarse.longestEdge, 6.0 * coarse.cell, 1e-9);
+  patches.longestEdge = coarse.longestEdge;
+  const std::size_t count = makePatches(coarse.scene, patches).patches.size();
+  EXPECT_LE(count, 300u);
+  EXPECT_GT(count, 100u);
+}
+
 TEST(CoarseScene, LampsThatAreTooManyAreRefused) {
   try {
     coarserScene(cubeRoom(16, 0.5, 3.0), PatchSettings{}, 100);

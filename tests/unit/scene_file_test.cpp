@@ -47,6 +47,13 @@ TEST(SceneFile, AModelAloneTakesTheDefaults) {
   EXPECT_EQ(folder.load(R"(, "exposure": 2)").exposure, 2.0f);
 }
 
+TEST(SceneFile, ABoxThatIsLitWithinIsSeenFromItsOpenSide) {
+  const Scene box = loadScene(std::filesystem::path(LUCERNA_SOURCE_DIR) / "assets/cornell/cornell.obj");
+  EXPECT_FALSE(box.sun);
+  EXPECT_LT(box.cameras.front().position.z, box.bounds.min.z);  // it is open to -z
+  EXPECT_GT(box.cameras.front().direction.z, 0.5);
+}
+
 // With the default sun surfaces in the sun decide from outside, those lit by reflection inside; a file's exposure
 // stays.
 TEST(SceneFile, TheDefaultExposureFollowsTheView) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <tuple>
 
@@ -13,6 +14,8 @@ namespace lucerna {
 namespace {
 
 constexpr double kFinerCells = 0.9;  // of the side of cells from one attempt to the next
+constexpr double kLongerEdges = 1.1;  // of the longest edge from one attempt to the next
+constexpr double kEdgeOfCells = 6.0;  // longest edge of a coarser model's patches, in cells, where it is free
 
 using Cell = std::tuple<std::int64_t, std::int64_t, std::int64_t>;
 
@@ -146,29 +149,39 @@ double rebuild(Scene& model, const Scene& scene, const std::vector<Face>& faces,
 CoarseScene coarserScene(const Scene& scene, double cell) {
   CHECK(cell > 0.0, "cells of {}", cell);
   const std::vector<Face> faces = facesOf(scene);
-  CoarseScene result{scene, cell, scene.triangleCount(), 0.0};
+  CoarseScene result{scene, cell, scene.triangleCount(), 0.0, 0.0};
   result.area = rebuild(result.scene, scene, faces, cell) / areaOf(faces);
   if (result.scene.indices.empty())
     throwBadInput("{}: nothing is left of it in cells of {:.4g} units", scene.file.string(), cell);
   return result;
 }
 
-CoarseScene coarserScene(const Scene& scene, const PatchSettings& patches, std::size_t most) {
-  CoarseScene result{scene, 0.0, scene.triangleCount(), 1.0};
-  const auto fits = [&](const Scene& model) {
-    return model.triangleCount() <= 8 * most && makePatches(model, patches).patches.size() <= most;
-  };
-  if (fits(scene)) return result;
-  const std::vector<Face> faces = facesOf(scene);
+namespace {
+
+double largestSide(const Scene& scene) {
   const glm::dvec3 extent = scene.bounds.extent();
-  const double side = std::max({extent.x, extent.y, extent.z}), before = areaOf(faces);
+  return std::max({extent.x, extent.y, extent.z});
+}
+
+bool fits(const Scene& model, const PatchSettings& patches, std::size_t most) {
+  return model.triangleCount() <= 8 * most && makePatches(model, patches).patches.size() <= most;
+}
+
+/// The model of the finest cells with at most `most` patches. `patchesOf` takes the side of a cell.
+CoarseScene finestModel(const Scene& scene, std::size_t most, const std::function<PatchSettings(double)>& patchesOf) {
+  CoarseScene result{scene, 0.0, scene.triangleCount(), 1.0, 0.0};
+  const std::vector<Face> faces = facesOf(scene);
+  const double side = largestSide(scene), before = areaOf(faces);
+  PatchSettings patches;
   Scene model = scene;
   for (double cell = 0.5 * side; cell > 1e-4 * side; cell *= kFinerCells) {
     const double area = rebuild(model, scene, faces, cell);
     if (model.triangleCount() > most) break;
-    if (model.indices.empty() || !fits(model)) continue;  // fewer corners may leave longer edges, and so more patches
+    patches = patchesOf(cell);
+    // Fewer corners may leave longer edges, and so more patches: finer cells may fit.
+    if (model.indices.empty() || !fits(model, patches, most)) continue;
     std::swap(result.scene, model);
-    result.cell = cell, result.area = area / before;
+    result.cell = cell, result.area = area / before, result.longestEdge = patches.longestEdge;
   }
   if (result.cell == 0.0)
     throwBadInput(
@@ -176,6 +189,27 @@ CoarseScene coarserScene(const Scene& scene, const PatchSettings& patches, std::
         "most {:.4g} units",
         scene.file.string(), most, patches.longestEdge);
   return result;
+}
+
+}  // namespace
+
+CoarseScene coarserScene(const Scene& scene, const PatchSettings& patches, std::size_t most) {
+  if (fits(scene, patches, most)) return {scene, 0.0, scene.triangleCount(), 1.0, patches.longestEdge};
+  return finestModel(scene, most, [&](double) { return patches; });
+}
+
+CoarseScene coarserSceneAndEdge(const Scene& scene, const PatchSettings& given, std::size_t most) {
+  CHECK(given.longestEdge > 0.0, "edges of {}", given.longestEdge);
+  PatchSettings patches = given;
+  if (scene.triangleCount() <= most / 2)
+    for (const double diagonal = glm::length(scene.bounds.extent());; patches.longestEdge *= kLongerEdges) {
+      if (fits(scene, patches, most)) return {scene, 0.0, scene.triangleCount(), 1.0, patches.longestEdge};
+      if (patches.longestEdge > diagonal) break;  // texels of lamps are patches, too
+    }
+  return finestModel(scene, most, [&](double cell) {
+    patches.longestEdge = std::max(given.longestEdge, kEdgeOfCells * cell);
+    return patches;
+  });
 }
 
 }  // namespace lucerna

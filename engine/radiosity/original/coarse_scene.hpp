@@ -18,6 +18,7 @@ struct CoarseScene {
   double cell = 0.0;  ///< side of a cell, scene units; 0: the scene as it was
   std::size_t triangles = 0;  ///< of the scene as it was
   double area = 1.0;  ///< of all triangles, over that of the scene as it was
+  double longestEdge = 0.0;  ///< of its patches, for at most as many as asked; 0: triangles stay whole
 };
 
 /// A model with cells of this side, above 0. Throws Error(badInput) if nothing with an area is left.
@@ -27,5 +28,10 @@ CoarseScene coarserScene(const Scene& scene, double cell);
 /// does. Throws Error(badInput) if even cells of half the scene leave more: too many emissive triangles, or too short
 /// an edge.
 CoarseScene coarserScene(const Scene& scene, const PatchSettings& patches, std::size_t most);
+
+/// The same where the longest edge is free, from `patches.longestEdge` (above 0) up. Up to half of `most` triangles are
+/// the scene itself, cut into as many patches as fit. Of a scene with more, edges are at most six cells long: longer
+/// triangles would keep large surfaces whole, and shorter ones leave no patches for the shape.
+CoarseScene coarserSceneAndEdge(const Scene& scene, const PatchSettings& patches, std::size_t most);
 
 }  // namespace lucerna

@@ -3,7 +3,7 @@
 #include "base/error.hpp"
 #include "gl/draw.hpp"
 #include "gl/pass.hpp"
-#include "radiosity/original/rad_scene.hpp"
+#include "radiosity/patches.hpp"
 #include "shared/bindings.h"
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -77,6 +77,10 @@ double percentileByArea(std::span<const RadTriangle> triangles, double share, Va
 double exposureOf(std::span<const RadTriangle> triangles) {
   const double most = percentileByArea(triangles, 0.99, [](const RadTriangle& t) { return static_cast<double>(t.b); });
   return most > 0.0 ? 1.0 / most : 1.0;
+}
+
+bool isUnsolved(std::span<const RadTriangle> triangles) {
+  return std::ranges::all_of(triangles, [](const RadTriangle& t) { return t.b == 0; });
 }
 
 double blackOf(std::span<const RadTriangle> triangles) {
@@ -182,19 +186,24 @@ std::vector<std::array<glm::vec3, 3>> cornerColours(std::span<const RadTriangle>
 
 RadTextures texturesOf(const Scene& scene, double longestEdge, std::span<const RadTriangle> triangles,
                        const std::string& file) {
-  const RadScene made = radTrianglesOf(scene, {longestEdge, 1});
-  const auto isSame = [](const RadTriangle& a, const RadTriangle& b) { return cornersOf(a) == cornersOf(b); };
-  if (made.triangles.size() != triangles.size() ||
-      !std::equal(triangles.begin(), triangles.end(), made.triangles.begin(), isSame))
+  PatchSettings patches;
+  const glm::dvec3 extent = scene.bounds.extent();
+  patches.longestEdge = longestEdge > 0.0 ? longestEdge : std::max({extent.x, extent.y, extent.z}) / 12.0;
+  const RadiosityMesh mesh = makePatches(scene, patches);
+  const auto isSame = [&](const Patch& patch, const RadTriangle& triangle) {
+    const auto corners = mesh.corners(patch);
+    return std::array{toFloats(corners[0]), toFloats(corners[1]), toFloats(corners[2])} ==
+           std::array{triangle.p1, triangle.p2, triangle.p3};
+  };
+  if (mesh.patches.size() != triangles.size() ||
+      !std::equal(mesh.patches.begin(), mesh.patches.end(), triangles.begin(), isSame))
     throwBadInput(
         "{}: {} triangles, which are not the {} that lucerna radiosity generate makes of {} with edges of at most "
         "{:.6g} units (--edge, --triangles)",
-        file, triangles.size(), made.triangles.size(), scene.file.string(), made.longestEdge);
-  PatchSettings patches;
-  patches.longestEdge = made.longestEdge;
+        file, triangles.size(), mesh.patches.size(), scene.file.string(), patches.longestEdge);
   RadTextures textures;
   for (const Texture& texture : scene.textures) textures.pictures.push_back(&texture.bitmap);
-  for (const Patch& patch : makePatches(scene, patches).patches) {
+  for (const Patch& patch : mesh.patches) {
     textures.ofTriangle.push_back(scene.materials[static_cast<std::size_t>(patch.material)].diffuseTexture);
     textures.texCoords.push_back(patch.texCoord);
   }

@@ -42,6 +42,9 @@ struct RadDisplay {
 /// above it. 1 if nothing is received.
 double exposureOf(std::span<const RadTriangle> triangles);
 
+/// Whether no triangle has received light, as in a file that no solver has written: only sources are bright.
+bool isUnsolved(std::span<const RadTriangle> triangles);
+
 /// The value that the logarithm shows as black: half of the value reached by 99 % of the lit area. 1 if nothing is lit.
 double blackOf(std::span<const RadTriangle> triangles);
 
