@@ -321,9 +321,6 @@ int runProgram(const Program& program, int argc, char** argv,
     }
     printError(fmt::format("{} (lucerna {}--help lists the options)", error.what(), used));
     return static_cast<int>(ErrorKind::badInput);
-  } catch (const Error& error) {  // of a value that is looked up
-    printError(error.what());
-    return error.exitCode();
   }
   try {
     checkNumbers(app);

@@ -170,11 +170,58 @@ std::vector<gl::Lines::Line> recordsOf(const IrradianceCache& cache, const Rende
 
 }  // namespace
 
+std::vector<gl::Lines::Line> boxesOf(const Bvh& bvh, const glm::dvec3& origin, int level, int most) {
+  struct Box {
+    glm::vec3 low, high;
+    bool isLeaf;
+    float size() const { return glm::length(high - low); }
+  };
+  std::vector<Box> boxes;
+  const glm::vec3 offset(bvh.origin - origin);
+  std::vector<std::pair<std::uint32_t, int>> open{{0u, 0}};  // nodes, with their level
+  while (!open.empty()) {
+    const auto [index, depth] = open.back();
+    open.pop_back();
+    const shared::BvhNode& node = bvh.nodes[index];
+    const std::uint32_t inner = node.exponents >> 24;
+    std::uint32_t child = node.firstChild;
+    for (unsigned k = 0; k < BVH_WIDTH; ++k) {
+      const auto byteOf = [&](const auto& words, unsigned first) {
+        return words[first + k / 4] >> 8 * (k % 4) & 0xffu;
+      };
+      if (byteOf(node.meta, 0) == 0) continue;
+      const bool isNode = (inner >> k & 1u) != 0;
+      if (isNode && depth < level) {
+        open.emplace_back(child++, depth + 1);
+        continue;
+      }
+      child += isNode ? 1 : 0;
+      Box box{offset, offset, !isNode};
+      for (int axis = 0; axis < 3; ++axis) {
+        const float step = std::ldexp(1.0f, static_cast<int>(node.exponents >> 8 * axis & 0xffu) - 127);
+        const unsigned first = 2 * static_cast<unsigned>(axis);
+        box.low[axis] += node.origin[axis] + step * static_cast<float>(byteOf(node.low, first));
+        box.high[axis] += node.origin[axis] + step * static_cast<float>(byteOf(node.high, first));
+      }
+      boxes.push_back(box);
+    }
+  }
+  std::ranges::stable_sort(boxes, [](const Box& a, const Box& b) { return a.size() > b.size(); });
+  if (boxes.size() > static_cast<std::size_t>(most)) boxes.resize(static_cast<std::size_t>(most));
+  std::vector<gl::Lines::Line> lines;
+  for (const Box& box : boxes)
+    addBox(lines, box.low, box.high,
+           box.isLeaf ? glm::vec4(0.4f, 0.9f, 0.4f, 0.7f) : glm::vec4(1.0f, 0.7f, 0.2f, 0.7f));
+  return lines;
+}
+
 std::vector<gl::Lines::Line> glyphsOf(Glyphs glyphs, const Renderer& renderer, const Scene& scene, const Camera& camera,
                                       int cascade, int most) {
   const RenderSettings& settings = renderer.settings();
   const LightPropagationVolume* volume = volumeOf(renderer.technique());
-  if (glyphs == Glyphs::none || (glyphs == Glyphs::records ? !cacheOf(renderer.technique()) : !volume)) return {};
+  if (glyphs == Glyphs::none || glyphs == Glyphs::boxes ||
+      (glyphs == Glyphs::records ? !cacheOf(renderer.technique()) : !volume))
+    return {};
   // Place them as lpv/lpv_frame.cpp and, but for the blend, irradiance_cache/irradiance_cache_frame.cpp do.
   Bounds bounds = scene.bounds;
   bounds.min -= renderer.origin();

@@ -24,10 +24,14 @@ void Overlay::drawGlyphs(const Frame& frame) {
   if (state_.glyphs == Glyphs::none || !side.renderer || side.shows == Shows::picture) return;
   const Camera& camera = state_.camera->camera();
   const IrradianceCache* cache = cacheOf(side.renderer->technique());  // their light changes from frame to frame
-  const std::string are = fmt::format("{} {} {} {} {} {} {}", static_cast<int>(state_.glyphs), side.builtAs,
-                                      state_.glyphCascade, state_.glyphMost, cameraText(*state_.scene, camera),
-                                      state_.shown, state_.glyphs == Glyphs::records && cache ? cache->frame() : 0);
-  if (are != glyphsAre_)
+  const std::string are =
+      fmt::format("{} {} {} {} {} {} {} {}", static_cast<int>(state_.glyphs), side.builtAs, state_.glyphCascade,
+                  state_.glyphLevel, state_.glyphMost, cameraText(*state_.scene, camera), state_.shown,
+                  state_.glyphs == Glyphs::records && cache ? cache->frame() : 0);
+  if (state_.glyphs != Glyphs::boxes) bvh_.reset();
+  else if (!bvh_ || bvhOf_ != state_.sceneVersion) bvh_ = buildBvh(*state_.scene), bvhOf_ = state_.sceneVersion;
+  if (bvh_ && are != glyphsAre_) glyphs_ = boxesOf(*bvh_, side.renderer->origin(), state_.glyphLevel, state_.glyphMost);
+  else if (are != glyphsAre_)
     glyphs_ = glyphsOf(state_.glyphs, *side.renderer, *state_.scene, camera, state_.glyphCascade, state_.glyphMost);
   glyphsAre_ = are;
   if (!lines_) lines_.emplace(programs_);

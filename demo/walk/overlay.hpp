@@ -39,7 +39,9 @@ class Overlay {
   Gizmo gizmo_;
   std::optional<Gizmo::Screen> screen_;  ///< in the last frame
   std::vector<gl::Lines::Line> glyphs_;
-  std::string glyphsAre_;  ///< what glyphs_ was made from
+  std::string glyphsAre_;
+  std::optional<Bvh> bvh_;  ///< for its boxes
+  std::uint64_t bvhOf_ = 0;  ///< version of the scene  ///< what glyphs_ was made from
 };
 
 }  // namespace lucerna::demo

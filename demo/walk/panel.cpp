@@ -308,6 +308,25 @@ void showCompare(Ui& ui, WalkState& s) {
   showJudgement(s, 1);
 }
 
+/// Single steps of propagation, and their energy.
+void showLpvSteps(Ui& ui, WalkState& s) {
+  if (button(ui, "measure the steps of propagation")) s.lpvStepsWanted = true;
+  explain("Propagates anew with 0, 1, 2, ... steps in one cascade: the light that each step brought, and its share.");
+  if (!s.lpvSteps || s.lpvSteps->steps() < 0) return;
+  const std::vector<float>& energies = s.lpvSteps->energies();
+  ImGui::PlotHistogram("flux", energies.data(), static_cast<int>(energies.size()), 0, nullptr, 0.0f, 1.0f,
+                       ImVec2(0.0f, 4.0f * ImGui::GetFontSize()));
+  ImGui::SliderInt("step", &s.lpvStep, -1, s.lpvSteps->steps(), s.lpvStep < 0 ? "the picture" : "%d");
+  ui.note("step");
+  if (s.lpvStep < 0) return;
+  slider(ui, "step brightness", s.stageFactor, -20.0f, 40.0f, "2^%.1f");
+  wrapped(fmt::format("{:.2f} % of the injected light is in the cells{}",
+                      100.0f * energies[static_cast<std::size_t>(std::min(s.lpvStep, s.lpvSteps->steps()))],
+                      s.lpvStep == 1 ? "; clamped lobes gain up to 14 % in the first step" : ""));
+  ImGui::SliderInt("slice", &s.stageLayer, 0, s.lpvSteps->slices() - 1);
+  ui.note("slice");
+}
+
 void showStages(Ui& ui, WalkState& s) {
   const SideState& side = s.side();
   if (!side.renderer) {
@@ -331,6 +350,7 @@ void showStages(Ui& ui, WalkState& s) {
     ui.note("layer");
   }
   if (isLight) slider(ui, "brightness", s.stageFactor, -20.0f, 40.0f, "2^%.1f");
+  if (volumeOf(side.renderer->technique())) showLpvSteps(ui, s);
   int count = static_cast<int>(s.countView), glyphs = static_cast<int>(s.glyphs);
   if (menu(ui, "count of", count, kCountViewNames)) s.countView = static_cast<CountView>(count);
   explain("Replaces the picture: black is none, then red, yellow, and white for the number set by the slider.");
@@ -345,6 +365,13 @@ void showStages(Ui& ui, WalkState& s) {
       "a cell long), the corners of cells that block light, or cache records: disks on their surfaces, in "
       "the colour of their irradiance.");
   if (s.glyphs == Glyphs::none) return;
+  if (s.glyphs == Glyphs::boxes) {
+    ImGui::SliderInt("level", &s.glyphLevel, 0, BVH_MAX_DEPTH - 1);
+    ui.note("level");
+    ImGui::SliderInt("at most", &s.glyphMost, 10, 5000, "%d", ImGuiSliderFlags_Logarithmic);
+    ui.note("at most");
+    return;
+  }
   const RenderSettings& settings = side.renderer->settings();
   const int last = (s.glyphs == Glyphs::records ? settings.of<IrradianceCacheSettings>().cascades
                                                 : settings.of<LpvSettings>().cascades)

@@ -10,6 +10,7 @@
 #include "walk/free_camera.hpp"
 #include "walk/scene_views.hpp"
 #include "walk/live_reference.hpp"
+#include "walk/lpv_steps.hpp"
 
 #include <array>
 #include <deque>
@@ -118,8 +119,11 @@ struct WalkState {
   CountView countView = CountView::none;
   float countWhite = 32.0f;
   std::unique_ptr<CountViews> countViews;
+  bool lpvStepsWanted = false;
+  std::unique_ptr<LpvSteps> lpvSteps;  ///< of the view at which they were asked for
+  int lpvStep = -1;  ///< shown instead of the picture; negative: none
   Glyphs glyphs = Glyphs::none;
-  int glyphCascade = MAX_CASCADES - 1, glyphMost = 400;
+  int glyphCascade = MAX_CASCADES - 1, glyphLevel = 1, glyphMost = 400;
 
   // Reference
   bool liveReferenceOn = false;

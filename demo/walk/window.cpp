@@ -10,6 +10,7 @@
 #include "gl/draw.hpp"
 #include "gl/pass.hpp"
 #include "gl/read_pictures.hpp"
+#include "lpv/lpv_frame.hpp"
 #include "scene/motion.hpp"
 #include "scene/studio.hpp"
 #include "walk/labels.hpp"
@@ -373,6 +374,7 @@ void WalkWindow::loadWantedScene() {
     // Nothing can fail from here on: the new scene replaces the old one.
     state_.reference.reset();
     state_.countViews.reset();
+    state_.lpvSteps.reset();
     for (SideState& side : state_.sides) {
       side.renderer.reset();
       side.builtAs.clear();
@@ -472,8 +474,24 @@ void WalkWindow::makeReady() {
     }
     changed();
   }
+  if (std::exchange(state_.lpvStepsWanted, false)) measureLpvSteps();
   for (int i = 0; i < 2; ++i)
     if (i == 0 || state_.isVisible(i)) make(state_.sides[static_cast<std::size_t>(i)]);
+}
+
+void WalkWindow::measureLpvSteps() {
+  const SideState& side = state_.side();
+  if (!side.renderer || !volumeOf(side.renderer->technique())) return;
+  try {
+    state_.lpvSteps.reset();
+    state_.lpvSteps = std::make_unique<LpvSteps>(context_, programs_, *state_.scene, side.renderer->settings(),
+                                                 state_.camera->camera(),
+                                                 [&](int step) { breathe(fmt::format("propagating {} steps", step)); });
+    state_.lpvStep = 0;
+    state_.stageLayer = state_.lpvSteps->slices() / 2;
+  } catch (const Error& error) { state_.say(error.what()); } catch (const Stopped&) {
+    state_.say("not measured");
+  }
 }
 
 const gl::Texture* WalkWindow::radianceOf(int index) const {
@@ -564,15 +582,17 @@ void WalkWindow::inspectPixel(const Compare::Inputs& inputs) {
 /// A stage's result or a count of the shown side, if one was chosen, instead of pictures.
 void WalkWindow::showDebugView(Compare::Inputs& inputs) {
   const SideState& shown = state_.side();
+  const auto show = [&](const StagePicture& picture) {
+    if (!stageView_) stageView_.emplace(programs_);
+    inputs.layout = Layout::one;
+    inputs.left = {&stageView_->record(picture, state_.stageLayer, std::exp2(state_.stageFactor), state_.scene->bounds),
+                   Show::values, nullptr};
+  };
+  if (state_.lpvSteps && state_.lpvStep >= 0)
+    show(state_.lpvSteps->picture(std::min(state_.lpvStep, state_.lpvSteps->steps())));
   if (!state_.stage.empty() && shown.renderer) {
-    for (const StagePicture& picture : shown.renderer->stagePictures()) {
-      if (picture.name != state_.stage) continue;
-      if (!stageView_) stageView_.emplace(programs_);
-      inputs.layout = Layout::one;
-      inputs.left = {
-          &stageView_->record(picture, state_.stageLayer, std::exp2(state_.stageFactor), state_.scene->bounds),
-          Show::values, nullptr};
-    }
+    for (const StagePicture& picture : shown.renderer->stagePictures())
+      if (picture.name == state_.stage) show(picture);
   }
   if (state_.countView == CountView::none || !shown.renderer) {
     state_.countViews.reset();
@@ -594,7 +614,7 @@ void WalkWindow::compose() {
       state_.reference && state_.liveReferenceOn && state_.reference->ready() && still_ >= kStillFrames;
   const bool shows = state_.show == Show::picture || (referenceThere && radianceOf(state_.shown) &&
                                                       radianceOf(state_.shown)->size2d() == state_.reference->size());
-  const bool stage = !state_.stage.empty() && shown.renderer;
+  const bool stage = (!state_.stage.empty() || (state_.lpvSteps && state_.lpvStep >= 0)) && shown.renderer;
   const bool counts = state_.countView != CountView::none && shown.renderer;
   const bool plain = !stage && !counts && state_.layout == Layout::one && (state_.show == Show::picture || !shows) &&
                      state_.zoom == 1.0f && !state_.magnifier &&
@@ -831,6 +851,7 @@ nlohmann::ordered_json WalkWindow::toJson() const {
                         {"count", ms.size()}};
   }
   json["messages"] = state_.messages;
+  if (state_.lpvSteps) json["flux_by_step"] = state_.lpvSteps->energies();
   if (const auto& sun = state_.scene->sun) json["sun"] = {sun->direction.x, sun->direction.y, sun->direction.z};
   json["lamps"] = nlohmann::ordered_json::array();
   for (const SpotLight& l : state_.scene->spots) json["lamps"].push_back({l.position.x, l.position.y, l.position.z});

@@ -48,6 +48,7 @@ class WalkWindow {
   void loadWantedScene();
   void makeReady();
   void make(SideState& side);
+  void measureLpvSteps();
   void draw();
   void makeReference(double frameSeconds);
   bool allSettled() const;

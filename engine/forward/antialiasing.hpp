@@ -40,6 +40,7 @@ class Antialiasing {
   /// Adds a frame to the running mean of at most `most` frames. `moves`: the view differs from that of the frame
   /// before. `reprojects`: if not, a moving view shows its new frame alone.
   void accumulate(const Frame& frame, bool moves, bool reprojects, int most, const gl::VertexArray& noAttributes);
+  bool hasShown() const { return history_.has_value(); }
   /// The running mean; alpha: the number of frames in it.
   const gl::Texture& shown() const { return history_->radiance[current_]; }
   void forget();

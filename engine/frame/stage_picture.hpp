@@ -15,7 +15,8 @@ struct StagePicture {
     flux,
     depth,
     irradiance,  ///< of the irradiance cache: a slice of cells per layer, faces and cascades one after the other
-    coefficients  ///< spherical harmonics of light in cells: one slice per layer, cascades one after the other
+    coefficients,  ///< spherical harmonics of light in cells: one slice per layer, cascades one after the other
+    samples  ///< alpha: how many samples of a pixel are in the picture; 16 are white
   };
   Kind kind;
   std::string name;

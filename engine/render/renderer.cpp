@@ -615,6 +615,8 @@ std::vector<StagePicture> Renderer::stagePictures() const {
         {StagePicture::Kind::depth, sunShadow_->followsCamera() ? "sun cascades" : "shadow map", &sunShadow_->depth()});
   if (technique_) technique_->addStagePictures(pictures);
   if (gpuScene_) pictures.push_back({StagePicture::Kind::depth, "depth", &depth_});
+  if (antialiasing_.hasShown())
+    pictures.push_back({StagePicture::Kind::samples, "samples a pixel", &antialiasing_.shown()});
   return pictures;
 }
 

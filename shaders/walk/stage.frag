@@ -15,7 +15,7 @@ layout(binding = 1) uniform sampler3D green;
 layout(binding = 2) uniform sampler3D blue;
 #endif
 uniform int layer;
-// StagePicture::Kind: 0 position, 1 normal, 2 flux, 3 depth, 4 irradiance of records, 5 coefficients
+// StagePicture::Kind: 0 position, 1 normal, 2 flux, 3 depth, 4 irradiance of records, 5 coefficients, 6 samples
 uniform int kind;
 uniform float factor;  // scales light
 uniform vec3 minimum;  // of the scene
@@ -41,5 +41,7 @@ void main() {
   // Perspective depth is concentrated near 1: the fourth root of the distance from 1 spreads it best.
   if (kind == 3) shown = vec3(pow(clamp(1.0 - value.r, 0.0, 1.0), 0.25));
   if (kind == 4) shown = value.w > 0.0 ? factor * value.rgb / value.w : vec3(0.0);
+  // Black (0) through red and yellow to white (16).
+  if (kind == 6) shown = clamp(vec3(3.0, 3.0, 3.0) * value.a / 16.0 - vec3(0.0, 1.0, 2.0), 0.0, 1.0);
   color = vec4(shown, 1.0);
 }

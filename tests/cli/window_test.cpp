@@ -228,6 +228,38 @@ TEST_F(Window, DebugViewsOfTheSceneItself) {
   for (const char* name : names) EXPECT_NE(pixels(name), frame) << name;
 }
 
+// The steps' light: all of it after none; clamped lobes gain at most 1.138208 in the first step
+// (shaders/lpv/reflect.comp); then less, as it leaves the grid.
+TEST_F(Window, StepsOfPropagationAndBoxesOfTheHierarchyAreShown) {
+  write(
+      "input.txt",
+      "1 key R\n2 touch Timings\n3 touch Compare\n4 touch Debug view\n20 save frame.png\n"
+      "21 touch Debug view/in the scene\n22 touch Debug view/in the scene: boxes of the hierarchy\n40 save boxes.png\n"
+      "41 touch Debug view/in the scene\n42 touch Debug view/in the scene: nothing\n"
+      "43 touch Debug view/measure the steps of propagation\n60 save step.png\n");
+  const RunResult result = play(path("input.txt"), "--technique lpv", "", "800x400");
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  EXPECT_EQ(glComplaints(result.err), "");
+  const auto amber = [&](const char* name) {
+    const lucerna::Bitmap picture = lucerna::readBitmap(path(name));
+    int count = 0;
+    for (std::size_t i = 0; i < picture.rgba.size(); i += 4)
+      count += picture.rgba[i + 1] > 130 && picture.rgba[i + 1] > picture.rgba[i] + 60 &&
+               picture.rgba[i + 1] > picture.rgba[i + 2] + 60;
+    return count;
+  };
+  EXPECT_EQ(amber("frame.png"), 0);
+  EXPECT_GT(amber("boxes.png"), 50) << "leaves are green";
+  EXPECT_TRUE(read("step.png") != read("frame.png"));
+  const std::vector<double> flux = json().at("window").at("flux_by_step");
+  ASSERT_EQ(flux.size(), 9u);
+  EXPECT_EQ(flux[0], 1.0);
+  for (std::size_t k = 1; k < flux.size(); ++k) {
+    EXPECT_LT(flux[k], flux[k - 1] * (k == 1 ? 1.1383 : 1.0)) << k;
+    EXPECT_GT(flux[k], 0.0) << k;
+  }
+}
+
 // Disks where light is kept, while the picture below them stays as it is.
 TEST_F(Window, CacheRecordsAreDrawnInTheScene) {
   write("input.txt",
