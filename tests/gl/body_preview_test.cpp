@@ -8,10 +8,12 @@
 
 #include "base/angles.hpp"
 #include "render/renderer.hpp"
+#include "scene/scene_file.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 
 namespace lucerna::test {
 namespace {
@@ -23,6 +25,17 @@ class BodyPreview : public PathTest {
     s.technique = "irradiance-cache";
     s.size = {32, 32};
     s.fullFloatTarget = true;
+    Renderer renderer(context(), library(), scene, s);
+    renderer.renderToTheEnd(camera);
+    return renderer.readRadiance();
+  }
+  static Image small(const Scene& scene, const Camera& camera) {
+    RenderSettings s;
+    s.technique = "irradiance-cache";
+    s.size = {24, 14};
+    s.fullFloatTarget = true;
+    s.pixelSamples = 2;
+    s.of<IrradianceCacheSettings>().samples = 16;
     Renderer renderer(context(), library(), scene, s);
     renderer.renderToTheEnd(camera);
     return renderer.readRadiance();
@@ -110,6 +123,30 @@ TEST_F(BodyPreview, ACloudOnAGridScattersLikeByPathTracing) {
   const Scene scene = cloudBeforeAWall(medium(glm::vec3(1.5f), glm::vec3(0.1f)));
   const glm::dvec3 seen = mean(drawn(scene, atBall(0.25))), expected = mean(traced(scene, atBall(0.25), 64));
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(seen[c], expected[c], 0.03 * expected[c]) << c;
+}
+
+// Each scene of assets/media, beside itself without its media.
+TEST_F(BodyPreview, EverySceneOfMediaShowsThem) {
+  int scenes = 0;
+  for (const auto& entry :
+       std::filesystem::recursive_directory_iterator(std::filesystem::path(LUCERNA_SOURCE_DIR) / "assets/media")) {
+    if (entry.path().extension() != ".json") continue;
+    const Scene with = loadScene(entry.path());
+    Scene without = with;
+    for (Material& material : without.materials)
+      if (material.bsdf == Bsdf::dielectric) material.interior = -1;
+      else if (material.bsdf == Bsdf::none)
+        without.media[static_cast<std::size_t>(material.interior)].grid->density.assign(96 * 96 * 96, 0.0f);
+    const Camera& camera = with.cameras.front();
+    const Image a = small(with, camera), b = small(without, camera);
+    double change = 0.0;
+    for (std::size_t i = 0; i < a.pixels.size(); ++i)
+      change += static_cast<double>(std::abs(a.pixels[i].y - b.pixels[i].y)) / static_cast<double>(a.pixels.size());
+    EXPECT_GT(mean(a).y, 0.01) << entry.path();
+    EXPECT_GT(change, 0.02 * mean(a).y) << entry.path();
+    ++scenes;
+  }
+  EXPECT_GE(scenes, 15);
 }
 
 // Fits and integrals against published values.
