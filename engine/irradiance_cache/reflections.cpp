@@ -11,29 +11,51 @@ constexpr double kRaysOfEach = 4.0;  ///< on average: it passes mirrors and glas
 }  // namespace
 
 Reflections::Reflections(gl::ProgramLibrary& programs, const Scene& scene, const gl::ShaderFlags& flags, int rays,
-                         double unmeasured)
+                         bool hasCoats, double unmeasured)
     : rays_(rays),
       lamps_((scene.sun ? 1 : 0) + static_cast<int>(scene.spots.size() + scene.points.size())),
       chunks_(unmeasured),
       program_(&programs.loadCompute(
           "cache reflections", "irradiance_cache/reflect.comp",
-          gl::with(flags, {{"FRESNEL_AMPLITUDES", 0}, {"FRESNEL_SCHLICK", 0}, {"LAMPS", lamps_}}))) {}
+          gl::with(flags, {{"FRESNEL_AMPLITUDES", 0}, {"FRESNEL_SCHLICK", 0}, {"LAMPS", lamps_}}))),
+      smooth_(hasCoats ? &programs.loadCompute("cache smooth reflections", "irradiance_cache/smooth.comp", {})
+                       : nullptr) {}
 
-void Reflections::resize(glm::ivec2 size) { radiance_ = gl::Texture("reflections", gl::Format::rgba32f, size); }
+void Reflections::resize(glm::ivec2 size) {
+  radiance_ = gl::Texture("reflections", gl::Format::rgba32f, size);
+  if (smooth_) averaged_ = gl::Texture("averaged reflections", gl::Format::rgba32f, size);
+}
 
-void Reflections::record(int sample, int samples, const std::function<void()>& bind) {
-  const gl::ComputePass pass("cache reflections", gl::Barrier::textureFetch | gl::Barrier::image, gl::Barrier::image);
-  program_->use();
-  bind();
-  const int rays = (rays_ + samples - 1) / samples;
-  program_->set("rays", rays);
-  program_->set("pixelSample", sample);
-  radiance_.bindImage(0, gl::Access::write);
-  const double iterations = (1.0 + kRaysOfEach * rays * (1 + lamps_)) * gl::kIterationsOfRay;
-  chunks_.forEach(radiance_.size2d(), iterations, kReflectionGroup, [&](glm::ivec2 corner, glm::ivec2 size) {
-    program_->set("firstPixel", corner);
-    pass.dispatch(glm::ivec3(size, 1), glm::ivec3(kReflectionGroup, kReflectionGroup, 1));
-  });
+void Reflections::record(int sample, int samples, const VisibleSurfaces& visible, const glm::mat4& worldFromClip,
+                         const std::function<void()>& bind) {
+  {
+    const gl::ComputePass pass("cache reflections", gl::Barrier::textureFetch | gl::Barrier::image, gl::Barrier::image);
+    program_->use();
+    bind();
+    const int rays = (rays_ + samples - 1) / samples;
+    program_->set("rays", rays);
+    program_->set("pixelSample", sample);
+    radiance_.bindImage(0, gl::Access::write);
+    const double iterations = (1.0 + kRaysOfEach * rays * (1 + lamps_)) * gl::kIterationsOfRay;
+    chunks_.forEach(radiance_.size2d(), iterations, kReflectionGroup, [&](glm::ivec2 corner, glm::ivec2 size) {
+      program_->set("firstPixel", corner);
+      pass.dispatch(glm::ivec3(size, 1), glm::ivec3(kReflectionGroup, kReflectionGroup, 1));
+    });
+  }
+  if (smooth_) smooth(visible, worldFromClip);
+}
+
+void Reflections::smooth(const VisibleSurfaces& visible, const glm::mat4& worldFromClip) const {
+  for (const bool across : {false, true}) {
+    const gl::ComputePass pass("cache smooth reflections", gl::Barrier::textureFetch | gl::Barrier::image,
+                               gl::Barrier::image);
+    smooth_->use();
+    visible.bind(*smooth_, worldFromClip);
+    smooth_->set("along", across ? glm::ivec2(0, 1) : glm::ivec2(1, 0));
+    (across ? averaged_ : radiance_).bind(UNIT_REFLECTED);
+    (across ? radiance_ : averaged_).bindImage(0, gl::Access::write);
+    pass.dispatch(glm::ivec3(radiance_.size2d(), 1), glm::ivec3(kReflectionGroup, kReflectionGroup, 1));
+  }
 }
 
 void Reflections::bindForShading() const { radiance_.bind(UNIT_REFLECTED); }

@@ -17,6 +17,7 @@ layout(std140, binding = BLOCK_CACHE_PATHS) uniform PathBlock { PathConstants tr
 #include "lib/spot.glsl"
 #include "irradiance_cache/lookup.glsl"
 #include "irradiance_cache/seen.glsl"
+// unordered reflected: each dispatch writes its own part of the picture
 layout(binding = 0) writeonly restrict uniform image2D reflected;
 uniform ivec2 firstPixel;
 uniform int rays;         // per sample of a pixel
@@ -127,9 +128,10 @@ vec3 radianceAlong(Ray ray, uint triangle, vec3 throughput, uint scatterings, Pa
   return sum;
 }
 
-// What the pixel's surface shows of its surroundings.
-vec3 reflectedBy(Surface surface, uint triangle, vec3 view, PathNumbers numbers) {
+// What the pixel's surface shows of its surroundings. alpha: of a coat whose lobe rays are drawn from, else 0.
+vec3 reflectedBy(Surface surface, uint triangle, vec3 view, PathNumbers numbers, out float alpha) {
   vec3 sum = vec3(0.0);
+  alpha = 0.0;
   PathMaterial material = materials[surface.material];
   if (material.kind == PATH_DIFFUSE || material.kind == PATH_NONE) return sum;
   bool isSmooth = material.kind != PATH_COATED && (material.kind != PATH_CONDUCTOR || material.roughness == 0.0);
@@ -160,6 +162,7 @@ vec3 reflectedBy(Surface surface, uint triangle, vec3 view, PathNumbers numbers)
     sum += (1.0 - ofRays) / kPi * coatAlbedo(coat, o.z) * kept;
   }
   if (!(ofRays > 0.0)) return sum;
+  alpha = coat.alpha;
   int count = coat.alpha < 0.01 ? 1 : rays;  // a lobe narrower than a pixel needs no more
   vec2 start = randomPair(numbers, 0u, kPurposeScatter);
   for (int i = 0; i < rays && i < count; ++i) {
@@ -184,6 +187,7 @@ void main() {
   if (any(greaterThanEqual(pixel, tracer.picture.xy))) return;
   int index = pixel.y * tracer.picture.x + pixel.x;
   vec3 sum = vec3(0.0);
+  float alpha = 0.0;
   Hit hit;
   Surface surface;
   if (seenAt(index, hit, surface)) {
@@ -192,7 +196,7 @@ void main() {
 #if NORMAL_MAPS
     applyNormalMap(surface, hit.triangle);
 #endif
-    sum = reflectedBy(surface, hit.triangle, view, PathNumbers(uint(index), uint(pixelSample), tracer.seed));
+    sum = reflectedBy(surface, hit.triangle, view, PathNumbers(uint(index), uint(pixelSample), tracer.seed), alpha);
   }
-  imageStore(reflected, pixel, vec4(sum, 0.0));
+  imageStore(reflected, pixel, vec4(sum, alpha));
 }
