@@ -53,7 +53,8 @@ WalkWindow::WalkWindow(const WalkOptions& options, Host& host, const gl::Context
       state_(std::move(state)),
       overlay_(programs, state_),
       reference_(context, programs, state_),
-      recorder_(state_) {
+      recorder_(state_),
+      solutions_(watchSolutions([this](const RadiosityStage& stage) { return goesOnSolving(stage); })) {
   state_.rendererName = context.capabilities().renderer;
   if (!options.playInput.empty()) player_.emplace(options.playInput);
   playedSize_ = parseSize(options.picture.size);
@@ -345,8 +346,9 @@ void WalkWindow::make(SideState& side) {
     side.failedAs = wanted;
     side.failure = error.what();
     state_.say(error.what());
-  } catch (const Stopped&) {
+  } catch (const Stopped& stopped) {
     if (first) {
+      logWarning("{}", stopped.what());
       stop_ = true;
       return;
     }
@@ -595,6 +597,18 @@ void WalkWindow::breathe(const std::string& what, double share) {
   drawUi({}, 0.02, what, share);
   host_.present(pictureTarget_.id(), window_);
   lastBreath_ = Clock::now();
+}
+
+bool WalkWindow::goesOnSolving(const RadiosityStage& stage) {
+  if (secondsSince(lastBreath_) < 0.1) return true;
+  lastBreath_ = Clock::now();
+  const HostInput input = host_.poll();
+  if (player_) return true;
+  stop_ = stop_ || input.closeRequested;
+  if (stage.total > 0)
+    host_.setTitle(fmt::format("Lucerna - {} - radiosity, {:.0f} % - Escape stops", state_.scene->name,
+                               100.0 * static_cast<double>(stage.done) / static_cast<double>(stage.total)));
+  return !stop_ && input.pressed.find('\x1b') == std::string::npos;
 }
 
 void WalkWindow::pace(Clock::time_point start) {

@@ -53,6 +53,8 @@ class WalkWindow {
   /// Called during long work: shows the old picture and a note of what is being done. Throws Stopped if Escape was
   /// pressed.
   void breathe(const std::string& what, double share = -1.0);
+  /// Called while radiosity is solved, which leaves no passes to draw by: the title tells how far. False: to stop.
+  bool goesOnSolving(const RadiosityStage& stage);
   void resizeTo(glm::ivec2 window);
   void drawUi(const HostInput& input, double seconds, const std::string& work, double share);
   bool drawsUi() const;
@@ -73,6 +75,7 @@ class WalkWindow {
   std::optional<InputPlayer> player_;
   std::optional<Compare> compare_;
   std::optional<StageView> stageView_;
+  std::unique_ptr<SolutionWatch> solutions_;
   HostInput input_;
   glm::dvec2 cursorBefore_{0.0};
   bool leftBefore_ = false;  ///< the left button was held in the last frame
