@@ -141,6 +141,20 @@ TEST_F(Measure, BenchErrorReportsAndGoesOnWhereItWas) {
     pareto |= row.at("pareto").get<bool>();
     EXPECT_EQ(row.contains("inside_model"), row.at("technique") != "path");
   }
+  // The sentence at the end: from the fastest picture of the front on, each technique where it is worth the time.
+  const nlohmann::json choices = report.at("choices");
+  ASSERT_FALSE(choices.empty());
+  EXPECT_NE(first.out.find("What to use for a picture's time: "), std::string::npos) << first.out;
+  double from = -1.0;
+  for (const auto& choice : choices) {
+    EXPECT_GT(choice.at("from_ms").get<double>(), from);
+    from = choice.at("from_ms");
+    EXPECT_NE(first.out.find(choice.at("first").get<std::string>() + " (error "), std::string::npos) << first.out;
+    const auto isItsRow = [&](const nlohmann::json& row) {
+      return row.at("label") == choice.at("first") && row.at("pareto") && row.at("fidelity") != "original";
+    };
+    EXPECT_TRUE(std::ranges::any_of(report.at("rows"), isItsRow)) << choice;
+  }
   EXPECT_TRUE(pareto);
   // Settings of a technique are ranked inside its model: what is not on that front is beaten there, and is on no other.
   // Equal within two standard errors is equal, in l2 and in time; what is at the reference's noise is three times that.
