@@ -88,7 +88,9 @@ const char* kEnvironment[][2] = {
      "../share/lucerna, then lucerna "
      "in the folders of XDG_DATA_DIRS."},
     {"LUCERNA_SHADERS", "Another folder of shaders, for example while editing them."},
-    {"LUCERNA_REFERENCES", "Where path-traced references are cached (default: lucerna in XDG_CACHE_HOME or ~/.cache)."},
+    {"LUCERNA_REFERENCES",
+     "Where path-traced references are cached, and rows of an interrupted radiosity solution (default: lucerna in "
+     "XDG_CACHE_HOME or ~/.cache)."},
     {"LUCERNA_DUMP_PROGRAMS",
      "A folder for the sources of all shader programs and their driver requirements, for validators and other "
      "compilers."},
@@ -105,7 +107,7 @@ const char* kExitCodes[][2] = {
     {"1", "An internal error; of bench stability: a row failed; of check: something is wrong."},
     {"2", "Invalid input: a file, an option or a value."},
     {"3", "Something is missing on this machine: a driver, memory, a package, the data."},
-    {"130", "Interrupted by Ctrl-C; finished work is kept."},
+    {"130, 143", "Interrupted by Ctrl-C, by SIGTERM; finished work is kept."},
 };
 
 std::string manual(Command program) {

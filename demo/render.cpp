@@ -42,6 +42,22 @@ void chooseDirectLight(RenderSettings& settings) {
                                                                               : RadiosityView::Direct::patches;
 }
 
+/// Radiosity is solved here, for minutes: it can be interrupted and resumed. What follows takes seconds.
+std::unique_ptr<Renderer> makeRenderer(const RenderOptions& options, const gl::Context& context,
+                                       gl::ProgramLibrary& programs, const Scene& scene,
+                                       const RenderSettings& settings) {
+  if (settings.technique != "radiosity") return std::make_unique<Renderer>(context, programs, scene, settings);
+  watchForInterrupt();
+  Progress progress("hemicubes", 1000, options.common.quiet);
+  const auto watch = watchSolutions([&](const RadiosityStage& stage) {
+    if (stage.total > 0) progress.update(static_cast<int>(1000 * stage.done / stage.total));
+    return true;
+  });
+  auto renderer = std::make_unique<Renderer>(context, programs, scene, settings);
+  endAtInterrupt();
+  return renderer;
+}
+
 /// --inspect: prints what lit a pixel. Path tracing traces only that pixel's paths.
 int inspect(const RenderOptions& options) {
   if (!options.output.empty())
@@ -63,7 +79,8 @@ int inspect(const RenderOptions& options) {
     answer = inspectPaths(context, programs, scene, camera, tracerSettings(options.picture, path, settings),
                           path.spp.value_or(static_cast<std::uint32_t>(settings.of<PathSettings>().samples)), pixel);
   } else {
-    Renderer renderer(context, programs, scene, settings);
+    const auto made = makeRenderer(options, context, programs, scene, settings);
+    Renderer& renderer = *made;
     renderer.renderToTheEnd(camera);
     answer = renderer.inspect(programs, camera, pixel);
     renderer.drain();
@@ -101,7 +118,8 @@ int runRender(RenderOptions options) {
     throwMissingCapability("--size {}: this driver's limit is {} pixels", options.picture.size,
                            context.capabilities().maxTextureSize);
   gl::ProgramLibrary programs;
-  Renderer renderer(context, programs, scene, settings);
+  const auto made = makeRenderer(options, context, programs, scene, settings);
+  Renderer& renderer = *made;
   const auto start = Clock::now();
   for (int i = 0; i < options.repeat; ++i) renderer.renderToTheEnd(camera);
   gl::finish();

@@ -348,6 +348,7 @@ nlohmann::ordered_json errorBenchJson(const ErrorBenchResult& result, const Erro
   json["left_out"] = report.leftOut;
   json["relmse_epsilon"] = measure::kRelativeEpsilon;
   json["sweeps"] = sweepsJson(report.rows);
+  json["choices"] = choiceJson(report.rows);
   json["path_slope"] = pathSlopeJson(report.rows);
   json["baselines"] = report.baselines;
   json["rows"] = report.rows;

@@ -257,7 +257,72 @@ std::string slopeText(const std::vector<ErrorRow>& rows) {
       s->first, s->last);
 }
 
+std::string timeText(double ms) {
+  return ms < 1.0      ? fmt::format("{:.2g} ms", ms)
+         : ms < 1000.0 ? fmt::format("{:.0f} ms", ms)
+                       : fmt::format("{:.3g} s", ms / 1000.0);
+}
+
+/// A technique, from the time in which its first picture of the front is drawn to that of the next technique's.
+struct Choice {
+  std::string technique;
+  const ErrorRow *first, *last;  ///< of the front, by time
+};
+
+/// The front by time, without what is as published, and less what improves the error by less than kWorthwhile. Empty if
+/// nothing was measured.
+std::vector<Choice> choicesOf(const std::vector<ErrorRow>& rows) {
+  constexpr double kWorthwhile = 0.1;
+  std::vector<const ErrorRow*> front;
+  for (const ErrorRow& row : rows)
+    if (flag(row, "pareto") && text(row, "fidelity") != "original" && std::isfinite(rankedError(row, "l2")))
+      front.push_back(&row);
+  std::ranges::sort(front, [](const ErrorRow* a, const ErrorRow* b) { return number(*a, "ms") < number(*b, "ms"); });
+  std::vector<Choice> choices;
+  for (const ErrorRow* row : front) {
+    const bool isFirst = choices.empty();
+    if (!isFirst && rankedError(*row, "l2") > (1.0 - kWorthwhile) * rankedError(*choices.back().last, "l2")) continue;
+    if (isFirst || choices.back().technique != text(*row, "technique"))
+      choices.push_back({text(*row, "technique"), row, row});
+    choices.back().last = row;
+  }
+  return choices;
+}
+
 }  // namespace
+
+std::string choiceText(const std::vector<ErrorRow>& rows) {
+  const std::vector<Choice> choices = choicesOf(rows);
+  if (choices.empty()) return "";
+  std::string result = "What to use for a picture's time: ";
+  for (std::size_t i = 0; i < choices.size(); ++i) {
+    const Choice& choice = choices[i];
+    const std::string until = i + 1 < choices.size() ? timeText(number(*choices[i + 1].first, "ms")) : "";
+    result += i == 0 ? (until.empty() ? "at any: " : fmt::format("below {}: ", until))
+                     : fmt::format("; from {} {}: ", timeText(number(*choice.first, "ms")),
+                                   until.empty() ? "on" : "to " + until);
+    const auto add = [&](const ErrorRow& row) {
+      result +=
+          fmt::format("{} (error {} in {})", text(row, "label"), errorText(row, "l2"), timeText(number(row, "ms")));
+    };
+    add(*choice.first);
+    if (choice.last != choice.first) {
+      result += " to ";
+      add(*choice.last);
+    }
+  }
+  return result + ". Times are this machine's; an error that falls by less than a tenth counts as none.";
+}
+
+nlohmann::ordered_json choiceJson(const std::vector<ErrorRow>& rows) {
+  auto json = nlohmann::ordered_json::array();
+  for (const Choice& choice : choicesOf(rows))
+    json.push_back({{"technique", choice.technique},
+                    {"from_ms", json.empty() ? 0.0 : number(*choice.first, "ms")},
+                    {"first", text(*choice.first, "label")},
+                    {"last", text(*choice.last, "label")}});
+  return json;
+}
 
 std::string terminalTable(const ErrorReport& report) {
   std::string result = notes(report) + "\nAll light:\n" + textOf(allLightTable(report));
@@ -272,6 +337,7 @@ std::string terminalTable(const ErrorReport& report) {
     result += fmt::format("\n{}\n{}", kSweepsNote, textOf(sweepsTable(sweeps)));
   if (!report.model.empty()) result += "\nWhat the models leave out, whatever the settings:\n";
   for (const ModelError& m : report.model) result += "  " + modelText(m) + "\n";
+  if (const std::string choice = choiceText(report.rows); !choice.empty()) result += "\n" + choice + "\n";
   return result;
 }
 
@@ -511,6 +577,7 @@ Figure figureOf(const fs::path& folder, const ErrorReport& report, std::vector<I
 void addToPage(HtmlPage& page, const fs::path& folder, const ErrorReport& report, std::size_t bytes) {
   page.section(fmt::format("{}: {}", report.isDeviationStudy ? "Deviations" : "Error against run time", report.title));
   page.preformatted(notes(report));
+  if (const std::string choice = choiceText(report.rows); !choice.empty()) page.paragraph(choice);
   std::vector<Image> store;
   const Figure figure = figureOf(folder, report, store);
   page.figure(figureHtml(figure, bytes));

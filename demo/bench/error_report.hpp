@@ -22,6 +22,9 @@ struct ErrorReport {
 };
 
 std::string terminalTable(const ErrorReport& report);
+/// A sentence: which technique to use for which time of a picture, from the front. Empty without rows.
+std::string choiceText(const std::vector<ErrorRow>& rows);
+nlohmann::ordered_json choiceJson(const std::vector<ErrorRow>& rows);
 /// Baselines and rows.
 std::string csvOf(const ErrorReport& report);
 /// Exponents of the error of the path tracer's corrected sweep; null with fewer than three rows above the reference's

@@ -5,6 +5,7 @@
 #include "gl/program.hpp"
 #include "host/host.hpp"
 #include "irradiance_cache/irradiance_cache.hpp"
+#include "radiosity/solution_watch.hpp"
 #include "render/renderer.hpp"
 #include "render/settings.hpp"
 #include "rsm/rsm_gather.hpp"
@@ -117,6 +118,11 @@ class Progress {
 /// step, keeps its state, writes no final file and ends with exitCode(). The same command continues from there.
 void watchForInterrupt();
 bool interrupted();
+/// The signals end the program at once from here on: for work that keeps no state. Throws Stopped if one has come.
+void endAtInterrupt();
+/// For the lifetime of the result, solutions of the technique radiosity stop at an interruption, or if `goOn` is false;
+/// they keep their form factors in the folder of cached references, from which the same command goes on.
+std::unique_ptr<SolutionWatch> watchSolutions(std::function<bool(const RadiosityStage&)> goOn = {});
 int exitCode();  ///< 0, or 128 + the signal's number: 130 after Ctrl-C, 143 after SIGTERM
 
 nlohmann::ordered_json stagesJson(const std::vector<gl::StageStatistics>& stages);

@@ -1,6 +1,7 @@
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "base/log.hpp"
+#include "measure/reference.hpp"
 #include "scene/motion.hpp"
 #include "scene/scene_file.hpp"
 #include "scene/studio.hpp"
@@ -17,6 +18,16 @@
 #include <sstream>
 
 namespace lucerna::demo {
+
+std::unique_ptr<SolutionWatch> watchSolutions(std::function<bool(const RadiosityStage&)> goOn) {
+  std::filesystem::path folder = measure::ReferenceCache::defaultFolder();
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) folder.clear();  // nothing is kept
+  return std::make_unique<SolutionWatch>(folder, [goOn = std::move(goOn)](const RadiosityStage& stage) {
+    return !interrupted() && (!goOn || goOn(stage));
+  });
+}
 
 // ---------------------------------------------------------------------------------------------------- options
 

@@ -88,6 +88,12 @@ void watchForInterrupt() {
   std::signal(SIGTERM, onInterrupt);
 }
 
+void endAtInterrupt() {
+  std::signal(SIGINT, SIG_DFL);
+  std::signal(SIGTERM, SIG_DFL);
+  if (g_interrupted) throw Stopped("stopped");
+}
+
 bool interrupted() { return g_interrupted != 0; }
 
 int exitCode() { return g_interrupted ? 128 + g_interrupted : 0; }

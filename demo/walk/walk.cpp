@@ -274,6 +274,8 @@ int runWalk(WalkOptions options) {
   if ((host->kind() == HostKind::window || !options.playInput.empty()) && !options.records())
     return play(options, *host, context, programs, std::move(scene), std::move(path));
   poseAt(scene, options.time);
+  watchForInterrupt();
+  const auto watch = watchSolutions();
   return record(options, *host, context, programs, scene,
                 std::make_unique<Renderer>(context, programs, scene, settings), path);
 }

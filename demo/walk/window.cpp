@@ -60,7 +60,8 @@ WalkWindow::WalkWindow(const WalkOptions& options, Host& host, const gl::Context
       state_(std::move(state)),
       overlay_(programs, state_),
       reference_(context, programs, state_),
-      recorder_(state_) {
+      recorder_(state_),
+      solutions_(watchSolutions([this](const RadiosityStage& stage) { return goesOnSolving(stage); })) {
   state_.rendererName = context.capabilities().renderer;
   if (!options.playInput.empty()) player_.emplace(options.playInput);
   playedSize_ = parseSize(options.picture.size);
@@ -450,8 +451,9 @@ void WalkWindow::make(SideState& side) {
     side.failedAs = wanted;
     side.failure = error.what();
     state_.say(error.what());
-  } catch (const Stopped&) {
+  } catch (const Stopped& stopped) {
     if (first) {
+      logWarning("{}", stopped.what());
       stop_ = true;
       return;
     }
@@ -742,6 +744,20 @@ void WalkWindow::breathe(const std::string& what, double share) {
   ui_->end(pictureTarget_);
   host_.present(pictureTarget_.id(), window_);
   lastBreath_ = Clock::now();
+}
+
+bool WalkWindow::goesOnSolving(const RadiosityStage& stage) {
+  if (player_ || secondsSince(lastBreath_) < 0.1) return true;
+  lastBreath_ = Clock::now();
+  host_.pump();
+  if (host_.input().closes()) stop_ = true;
+  using Kind = RadiosityStage::Kind;
+  std::string what = stage.kind == Kind::direct ? "direct light" : "form factors";
+  if (stage.kind == Kind::solving) what = fmt::format("solving, error at most {:.2g}", stage.solve.errorBound);
+  else if (stage.total > 0)
+    what += fmt::format(", {:.0f} %", 100.0 * static_cast<double>(stage.done) / static_cast<double>(stage.total));
+  host_.setTitle(fmt::format("Lucerna - {} - radiosity: {} - Escape stops", state_.scene->name, what));
+  return !stop_ && !interrupted() && !host_.input().takeEscape();
 }
 
 void WalkWindow::pace(Clock::time_point start) {

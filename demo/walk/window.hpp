@@ -63,6 +63,8 @@ class WalkWindow {
   /// Called during long work: shows the old picture and a note of what is being done. Throws Stopped if Escape was
   /// pressed.
   void breathe(const std::string& what, double share = -1.0);
+  /// Called while radiosity is solved, which leaves no passes to draw by: the title tells how far. False: to stop.
+  bool goesOnSolving(const RadiosityStage& stage);
   void resizeTo(glm::ivec2 window);
   void buildUi(double seconds);
   void drawUi(double seconds);
@@ -84,6 +86,7 @@ class WalkWindow {
   std::optional<InputPlayer> player_;
   std::optional<Compare> compare_;
   std::optional<StageView> stageView_;
+  std::unique_ptr<SolutionWatch> solutions_;
   HostInput input_;  ///< the step that is acted on
   HostInput walking_;  ///< keys of movement that were held in any step of this frame
   std::optional<double> orbitDistance_;  ///< of the point that the mouse moves around, while a button is held

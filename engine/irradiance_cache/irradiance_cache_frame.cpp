@@ -67,7 +67,7 @@ void IrradianceCacheFrame::makeReflections() {
   if (Bodies::isNeeded(parts_.features))
     bodies.emplace(parts_.scene, parts_.traced.get().origin(), parts_.context.capabilities());
   reflections_.emplace(parts_.programs, parts_.scene, cache_.rayFlags(1, true), settings().reflections,
-                       parts_.settings.unmeasuredIterations, std::move(bodies));
+                       parts_.traced.get().hasCoats(), parts_.settings.unmeasuredIterations, std::move(bodies));
   reflections_->resize(visible_.size());
 }
 
@@ -113,11 +113,13 @@ bool IrradianceCacheFrame::record(gl::TimeQuery& timer, const FrameView& view, F
   const IrradianceCacheSettings& cache = settings();
   const int rounds = effort.wholePicture ? (cache.samples + cache.rays - 1) / cache.rays : 1;
   const glm::dvec2 size(visible_.size());
-  cache_.update(
-      {placeCascadesAround(cache.cascades, parts_.drawn().scene().bounds, volume, size.x / size.y), view.camera,
-       view.offset, glm::mat4(glm::inverse(view.clip)), visible_, maps, mapsAreNew, effort.fadesIn},
-      rounds);
-  if (reflections_) reflections_->record(view.sample, parts_.settings.pixelSamples, [&] { cache_.bindForRays(); });
+  const glm::mat4 worldFromClip(glm::inverse(view.clip));
+  cache_.update({placeCascadesAround(cache.cascades, parts_.drawn().scene().bounds, volume, size.x / size.y),
+                 view.camera, view.offset, worldFromClip, visible_, maps, mapsAreNew, effort.fadesIn},
+                rounds);
+  if (reflections_)
+    reflections_->record(view.sample, parts_.settings.pixelSamples, visible_, worldFromClip,
+                         [&] { cache_.bindForRays(); });
   return true;
 }
 

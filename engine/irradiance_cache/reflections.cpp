@@ -14,7 +14,7 @@ constexpr double kRaysThroughMedia = 12.0;  ///< with the boundaries and collisi
 }  // namespace
 
 Reflections::Reflections(gl::ProgramLibrary& programs, const Scene& scene, const gl::ShaderFlags& flags, int rays,
-                         double unmeasured, std::optional<Bodies> bodies)
+                         bool hasCoats, double unmeasured, std::optional<Bodies> bodies)
     : rays_(rays),
       lamps_((scene.sun ? 1 : 0) + static_cast<int>(scene.spots.size() + scene.points.size())),
       bodies_(std::move(bodies)),
@@ -22,26 +22,48 @@ Reflections::Reflections(gl::ProgramLibrary& programs, const Scene& scene, const
       program_(&programs.loadCompute(
           "cache reflections", "irradiance_cache/reflect.comp",
           gl::with(gl::with(flags, {{"FRESNEL_AMPLITUDES", 0}, {"FRESNEL_SCHLICK", 0}, {"LAMPS", lamps_}}),
-                   bodies_ ? bodies_->flags() : gl::ShaderFlags{{"BODIES", 0}, {"CLOUDS", 0}, {"GRIDS", 0}}))) {}
+                   bodies_ ? bodies_->flags() : gl::ShaderFlags{{"BODIES", 0}, {"CLOUDS", 0}, {"GRIDS", 0}}))),
+      smooth_(hasCoats ? &programs.loadCompute("cache smooth reflections", "irradiance_cache/smooth.comp", {})
+                       : nullptr) {}
 
-void Reflections::resize(glm::ivec2 size) { radiance_ = gl::Texture("reflections", gl::Format::rgba32f, size); }
+void Reflections::resize(glm::ivec2 size) {
+  radiance_ = gl::Texture("reflections", gl::Format::rgba32f, size);
+  if (smooth_) averaged_ = gl::Texture("averaged reflections", gl::Format::rgba32f, size);
+}
 
-void Reflections::record(int sample, int samples, const std::function<void()>& bind) {
-  // The cache stores its records before: that pass waits for the draws that read the last frame's reflections.
-  const gl::ComputePass pass("cache reflections", gl::Barrier::textureFetch);
-  program_->use();
-  bind();
-  if (bodies_) bodies_->bind(*program_);
-  const int rays = (rays_ + samples - 1) / samples;
-  program_->set("rays", rays);
-  program_->set("pixelSample", sample);
-  radiance_.bindImage(0, gl::Access::write);
-  const double ofEach = bodies_ ? kRaysThroughMedia : kRaysOfEach;
-  const double iterations = (1.0 + ofEach * rays * (1 + lamps_)) * gl::kIterationsOfRay;
-  chunks_.forEach(radiance_.size2d(), iterations, kReflectionGroup, [&](glm::ivec2 corner, glm::ivec2 size) {
-    program_->set("firstPixel", corner);
-    pass.dispatch(glm::ivec3(size, 1), glm::ivec3(kReflectionGroup, kReflectionGroup, 1));
-  });
+void Reflections::record(int sample, int samples, const VisibleSurfaces& visible, const glm::mat4& worldFromClip,
+                         const std::function<void()>& bind) {
+  {
+    // The cache stores its records before: that pass waits for the draws that read the last frame's reflections.
+    const gl::ComputePass pass("cache reflections", gl::Barrier::textureFetch);
+    program_->use();
+    bind();
+    if (bodies_) bodies_->bind(*program_);
+    const int rays = (rays_ + samples - 1) / samples;
+    program_->set("rays", rays);
+    program_->set("pixelSample", sample);
+    radiance_.bindImage(0, gl::Access::write);
+    const double ofEach = bodies_ ? kRaysThroughMedia : kRaysOfEach;
+    const double iterations = (1.0 + ofEach * rays * (1 + lamps_)) * gl::kIterationsOfRay;
+    chunks_.forEach(radiance_.size2d(), iterations, kReflectionGroup, [&](glm::ivec2 corner, glm::ivec2 size) {
+      program_->set("firstPixel", corner);
+      pass.dispatch(glm::ivec3(size, 1), glm::ivec3(kReflectionGroup, kReflectionGroup, 1));
+    });
+  }
+  if (smooth_) smooth(visible, worldFromClip);
+}
+
+void Reflections::smooth(const VisibleSurfaces& visible, const glm::mat4& worldFromClip) const {
+  for (const bool across : {false, true}) {
+    const gl::ComputePass pass("cache smooth reflections", gl::Barrier::textureFetch,
+                               across ? gl::Barrier::image : gl::Barrier::none);
+    smooth_->use();
+    visible.bind(*smooth_, worldFromClip);
+    smooth_->set("along", across ? glm::ivec2(0, 1) : glm::ivec2(1, 0));
+    (across ? averaged_ : radiance_).bind(UNIT_REFLECTED);
+    (across ? radiance_ : averaged_).bindImage(0, gl::Access::write);
+    pass.dispatch(glm::ivec3(radiance_.size2d(), 1), glm::ivec3(kReflectionGroup, kReflectionGroup, 1));
+  }
 }
 
 void Reflections::bindForShading() const { radiance_.bind(UNIT_REFLECTED); }

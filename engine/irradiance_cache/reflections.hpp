@@ -1,7 +1,9 @@
 // What coats, mirrors and glass show of the scene in the technique irradiance-cache: rays from each of their pixels,
-// lit at their ends by the records (shaders/irradiance_cache/reflect.comp). Lamps' highlights are forward shading's.
+// lit at their ends by the records (shaders/irradiance_cache/reflect.comp). Those of rough coats are averaged with the
+// pixels beside (smooth.comp). Lamps' highlights are forward shading's.
 #pragma once
 
+#include "forward/visible_surfaces.hpp"
 #include "gl/objects.hpp"
 #include "gl/picture_chunks.hpp"
 #include "gl/program.hpp"
@@ -21,24 +23,33 @@ class Reflections {
   }
   /// Whether surfaces are seen through clouds, whose boundaries are then not drawn.
   static bool showsClouds(const SceneFeatures& features, int rays) { return Bodies::hasClouds(features) && rays > 0; }
-  /// flags: of programs that trace rays and look up records. rays: per pixel. bodies: if the scene has media.
-  Reflections(gl::ProgramLibrary& programs, const Scene& scene, const gl::ShaderFlags& flags, int rays,
+  /// flags: of programs that trace rays and look up records. rays: per pixel. hasCoats: rough surfaces reflect. bodies:
+  /// if the scene has media.
+  Reflections(gl::ProgramLibrary& programs, const Scene& scene, const gl::ShaderFlags& flags, int rays, bool hasCoats,
               double unmeasured, std::optional<Bodies> bodies);
 
   void resize(glm::ivec2 size);
   /// For the view that the records were last updated for. sample: number of the pixels' sample, each of which takes
-  /// its share of the rays, at least one. bind: scene, records and their constants.
-  void record(int sample, int samples, const std::function<void()>& bind);
+  /// its share of the rays, at least one. visible, worldFromClip: that view's. bind: scene, records and their
+  /// constants.
+  void record(int sample, int samples, const VisibleSurfaces& visible, const glm::mat4& worldFromClip,
+              const std::function<void()>& bind);
   void bindForShading() const;  ///< unit UNIT_REFLECTED for shaders/irradiance_cache/surface.frag
   double largestIterations() const { return chunks_.largestIterations(); }
-  std::size_t gpuBytes() const { return radiance_.bytes() + (bodies_ ? bodies_->gpuBytes() : 0); }
+  std::size_t gpuBytes() const {
+    return radiance_.bytes() + (smooth_ ? averaged_.bytes() : 0) + (bodies_ ? bodies_->gpuBytes() : 0);
+  }
 
  private:
+  void smooth(const VisibleSurfaces& visible, const glm::mat4& worldFromClip) const;
+
   int rays_, lamps_;
   std::optional<Bodies> bodies_;
   gl::PictureChunks chunks_;
   gl::Texture radiance_;  ///< W per square scene unit and steradian, of each pixel
+  gl::Texture averaged_;  ///< the same, along one axis; only with coats
   const gl::Program* program_;
+  const gl::Program* smooth_ = nullptr;  ///< only with coats
 };
 
 }  // namespace lucerna

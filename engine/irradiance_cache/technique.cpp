@@ -21,7 +21,7 @@ SettingValue raysOfFrame() {
 std::span<const Setting> cacheSettings() {
   constexpr auto rebuild = SettingCost::rebuild;
   static const std::vector<Setting> table{
-      CASCADE_SETTINGS("cache", IrradianceCacheSettings, "[Kaplanyan2010, section 5]"),
+      CASCADE_SETTINGS("cache", IrradianceCacheSettings, "[Kaplanyan2010, section 5]", "", ""),
       {"cache.transport", choice(SETTING_FIELD(IrradianceCacheSettings, transport)), "",
        "source of a record's light: rays, along paths; gather, from the lights' maps and a bounce cache"},
       {"cache.blend", number(SETTING_FIELD(IrradianceCacheSettings, blendBand), 0.001, 1.0), "of its reach",

@@ -26,12 +26,15 @@ SettingValue blocking() {
 std::span<const Setting> lpvSettings() {
   constexpr auto rebuild = SettingCost::rebuild;
   static const std::vector<Setting> table{
-      CASCADE_SETTINGS("lpv", LpvSettings, "[Kaplanyan2010, section 5]"),
+      CASCADE_SETTINGS("lpv", LpvSettings, "[Kaplanyan2010, section 5]",
+                       "; more do not converge: light crosses more of them and loses its direction in each",
+                       "; more raise the error: finer ones take light from coarser ones that has lost its direction"),
       {"lpv.blend", number(SETTING_FIELD(LpvSettings, blendBand), 0.001, 1.0), "half extents",
        "width of the band over which a cascade fades into the next", "[Kaplanyan2010, section 5]"},
       {"lpv.bounces", number(SETTING_FIELD(LpvSettings, bounces), 1, 64), "",
        "reflections before light reaches a surface", "[Kaplanyan2010]"},
-      {"lpv.iterations", number(SETTING_FIELD(LpvSettings, iterations), 0, 100000), "steps", "propagation steps",
+      {"lpv.iterations", number(SETTING_FIELD(LpvSettings, iterations), 0, 100000), "steps",
+       "propagation steps; more raise the error: light of two bands of directions spreads sideways with each",
        "[Kaplanyan2010, section 4.3]"},
       {"lpv.blocking", blocking(), "", "source of the surfels in the geometry volume, which blocks light; off: none",
        "[Kaplanyan2010, section 4.2]"},

@@ -1,6 +1,7 @@
 #include "radiosity/direct_light.hpp"
 
 #include "base/angles.hpp"
+#include "base/stop_watch.hpp"
 #include "gl/pass.hpp"
 #include "scene/triangle_parts.hpp"
 
@@ -179,6 +180,7 @@ std::vector<glm::dvec3> directLight(gl::ProgramLibrary& programs, const RayScene
   const std::size_t raysOfPatch = static_cast<std::size_t>(parts * parts) * lights;
   const std::size_t patchesEach = std::max<std::size_t>(OcclusionRays::kEach / raysOfPatch, 1);
   for (std::size_t first = 0; first < mesh.patches.size(); first += patchesEach) {
+    StopWatch::check("finding direct light");
     std::vector<Ray> batch;
     struct Sample {
       std::size_t patch;
@@ -211,6 +213,7 @@ std::vector<std::uint32_t> backsMet(gl::ProgramLibrary& programs, const RayScene
                                                     {{"ALPHA_MASKS", 0}, {"SHARED_STACK", rays.sharedStack()}});
   std::vector<std::uint32_t> met;
   for (std::size_t first = 0; first < segments.size(); first += OcclusionRays::kEach) {
+    StopWatch::check("looking for lit backs");
     std::vector<std::array<glm::vec4, 2>> batch;  // origins and directions
     for (const Segment& s : segments.subspan(first, std::min(OcclusionRays::kEach, segments.size() - first)))
       batch.push_back({glm::vec4(glm::vec3(s.from - rays.origin()), 0.0f), glm::vec4(glm::vec3(s.to - s.from), 0.0f)});
@@ -250,6 +253,7 @@ std::vector<glm::dvec3> skyLight(gl::ProgramLibrary& programs, const RayScene& r
   if (environment.picture) bright.emplace(environment);
   const std::size_t toTexels = bright && !bright->empty() ? raysOfPatch / 2 : 0, toAll = raysOfPatch - toTexels;
   for (std::size_t first = 0; first < mesh.patches.size(); first += OcclusionRays::kEach / raysOfPatch) {
+    StopWatch::check("finding the sky's light");
     const std::size_t end = std::min(first + OcclusionRays::kEach / raysOfPatch, mesh.patches.size());
     std::vector<Ray> batch;
     std::vector<glm::dvec3> carried;  // irradiance

@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "gl/limits.hpp"
+#include "radiosity/solution_watch.hpp"
 
 #include <fmt/ranges.h>
 
@@ -27,11 +28,11 @@ RadiositySolution solveOrLoad(const gl::Context& context, gl::ProgramLibrary& pr
   }
   std::filesystem::path checkpoint = settings.file;
   if (!checkpoint.empty()) checkpoint += ".part";
-  RadiositySolution solution = solveScene(context, programs, scene, settings.solution, checkpoint);
-  if (!settings.file.empty()) {
-    saveSolution(settings.file, scene, solution);
-    removeCheckpoints(checkpoint);
-  }
+  else checkpoint = SolutionWatch::checkpointOf(scene, settings.solution);
+  RadiositySolution solution =
+      solveScene(context, programs, scene, settings.solution, checkpoint, SolutionWatch::innermostOnStage());
+  if (!settings.file.empty()) saveSolution(settings.file, scene, solution);
+  if (!checkpoint.empty()) removeCheckpoints(checkpoint);
   return solution;
 }
 

@@ -4,6 +4,7 @@
 #include "scene/place.hpp"
 
 #include "base/error.hpp"
+#include "base/stop_watch.hpp"
 
 #include <algorithm>
 #include <array>
@@ -171,6 +172,12 @@ class BinaryBuilder {
   }
 
   std::uint32_t build(std::vector<Reference> references, std::size_t spare, int depth) {
+    // Threads beside this one have no watch of their own: they see its answer.
+    constexpr std::size_t kLong = 1024;  // references
+    if (references.size() > kLong && (isStopped_ || StopWatch::wantsStop())) {
+      isStopped_ = true;
+      throw Stopped("stopped while building the ray hierarchy; nothing of it is kept");
+    }
     const std::uint32_t index = used_++;
     BinaryNode& node = nodes_[index];
     node.box = boxOfAll(references);
@@ -390,6 +397,7 @@ class BinaryBuilder {
   std::vector<BinaryNode> nodes_;
   std::atomic<std::uint32_t> used_{0};
   std::atomic<int> spareThreads_{0};
+  std::atomic<bool> isStopped_{false};
 };
 
 // ---------------------------------------------------------------------------------------------------- eight children

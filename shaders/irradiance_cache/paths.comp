@@ -6,6 +6,7 @@
 // random numbers it shares. Every surface is treated as Lambertian, as forward shading treats it. Direct light of the
 // sun, spots and omnidirectional lamps is excluded: forward shading adds it per pixel.
 // FROM_CELLS, for measurements: instead of the record, the middle of a cell that a lookup at the record would read.
+// What surfaces close to a spot or an omnidirectional lamp reflect is found by rays from the lamp: see isFoundFromLamp.
 // CACHED: where a path's hit lies among records, their irradiance of the previous frame replaces the rest of the
 // path. One bounce per frame thus adds up to all of them; elsewhere the path continues.
 layout(local_size_x = 64) in;  // CACHE_LANES; GLSL 4.30 accepts only literals here
@@ -20,6 +21,13 @@ layout(std140, binding = BLOCK_CACHE_PATHS) uniform PathBlock { PathConstants tr
 #include "rays/environment.glsl"
 #if NEXT_EVENT
 #include "rays/lights.glsl"
+#endif
+#if NEXT_EVENT && (SPOTS || POINTS) && !FROM_CELLS
+#define LAMP_RAYS 1
+const uint kRaysOfScattering = 4u;  // a shadow ray and the path's own, and a lamp's with another shadow ray
+#else
+#define LAMP_RAYS 0
+const uint kRaysOfScattering = 2u;
 #endif
 #if CACHED
 #include "irradiance_cache/lookup.glsl"
@@ -73,10 +81,79 @@ struct Shadow {
   uint skip;
 };
 
+// A ray from a lamp, which finds a surface that reflects the lamp's light to a path's vertex.
+struct LampRay {
+  bool waits;
+  uint lamp;
+  vec3 flux;  // of which each ray has a share
+  Ray ray;
+};
+
+#if LAMP_RAYS
+// Whether light goes from a lamp's ball by way of `surface` to the path's vertex before is found by rays from the lamp:
+// where the surface is much closer to the lamp than to that vertex. A path seldom meets it, but then finds a light that
+// grows as the inverse square of the distance: bright spots of single records. Not inside of the ball, nor where a
+// smooth normal faces the lamp and the triangle hardly does, so that few of the lamp's rays meet it.
+// before2: squared distance to the vertex before. All other ways are next-event estimation's.
+bool isFoundFromLamp(Surface surface, float before2, PathLight lamp, vec3 direction) {
+  vec3 away = lamp.a - surface.position;
+  float distance2 = dot(away, away);
+  return distance2 < 0.25 * before2 && distance2 > lamp.size * lamp.size &&
+         dot(direction, surface.geometricNormal) > 0.25 * dot(direction, surface.normal);
+}
+
+// From the lamp that next-event estimation picks, too. To where isFoundFromLamp may hold for a vertex at `position`.
+LampRay queueLampRay(vec3 position, uint scatterings, PathNumbers numbers) {
+  LampRay result = LampRay(false, 0u, vec3(0.0), Ray(vec3(0.0), 0.0, vec3(1.0), 0.0));
+  uvec4 words = randomWords(numbers, scatterings, kPurposePick);
+  result.lamp = pick(words);
+  PathLight lamp = lights[result.lamp];
+  if (lamp.kind != PATH_LIGHT_POINT && lamp.kind != PATH_LIGHT_SPOT) return result;
+  vec3 axis = vec3(0.0, 0.0, 1.0);
+  float lessCosine = 2.0, falloff = 1.0;
+  bool isSpot = lamp.kind == PATH_LIGHT_SPOT;
+  if (isSpot) axis = lamp.b, lessCosine = 1.0 - uintBitsToFloat(lamp.q);
+  vec3 direction = coneSample(axis, lessCosine, randomPair(numbers, scatterings, kPurposeLight)), t, b;
+#if SPOTS
+  if (isSpot) falloff = spotFalloff(dot(direction, lamp.b), uintBitsToFloat(lamp.p), uintBitsToFloat(lamp.q));
+#endif
+  result.flux = lamp.c * (2.0 * kPi * lessCosine * falloff / lamp.probability);
+  // A ball's rays in one direction are spread evenly over its disc.
+  tangentFrame(direction, t, b);
+  float radius2 = unitFloat(words.z), turn = 2.0 * kPi * unitFloat(words.w);
+  vec3 start = lamp.a + lamp.size * (sqrt(radius2) * (cos(turn) * t + sin(turn) * b) + sqrt(1.0 - radius2) * direction),
+       largest = abs(start);
+  float gap = max(largest.x, max(largest.y, largest.z)) * 7.62939453125e-6;  // 2^-17: surfaces in which the lamp lies
+  result.ray = Ray(start, gap, direction, 1.001 * (distance(lamp.a, position) + lamp.size));
+  result.waits = any(greaterThan(result.flux, vec3(0.0)));
+  return result;
+}
+
+// From where the lamp's ray has met a surface to the path's vertex.
+Shadow queueConnection(LampRay from, Hit hit, Surface surface, uint triangle, vec3 throughput) {
+  vec3 start = offsetRay(surface.position, surface.geometricNormal, surface.magnitude), toLamp = -from.ray.direction;
+  Shadow shadow = Shadow(false, vec3(0.0), Ray(start, 0.0, vec3(1.0), 1.0), triangle);
+  Surface lit = surfaceAt(hit.triangle, hit.barycentrics, from.ray.origin + hit.t * from.ray.direction - start);
+  vec3 way = lit.position - start;
+  float distance2 = dot(way, way), cosine = dot(toLamp, lit.normal);
+  vec3 direction = way * inversesqrt(max(distance2, 1e-30));
+  float leaves = dot(direction, surface.normal), arrives = -dot(direction, lit.geometricNormal);
+  if (!(leaves > 0.0 && dot(direction, surface.geometricNormal) > 0.0 && arrives > 0.0 && cosine > 0.0)) return shadow;
+  PathLight lamp = lights[from.lamp];
+  bool isLit = dot(toLamp, shadowStart(lit, hit.triangle).normal) > 0.0;
+  if (!isLit || !isFoundFromLamp(lit, distance2, lamp, toLamp)) return shadow;
+  shadow.light = throughput * from.flux * wholeAlbedoAt(lit) *
+                 (leaves * arrives / (kPi * kPi * distance2) * cosine / dot(toLamp, lit.geometricNormal));
+  shadow.ray.direction = way;
+  shadow.waits = any(notEqual(shadow.light, vec3(0.0)));
+  return shadow;
+}
+#endif
+
 #if NEXT_EVENT
-// Next-event estimation from a surface of reflectance `throughput` * pi over irradiance; scatterings: including this
-// one.
-Shadow queueShadowRay(Surface surface, uint triangle, vec3 throughput, uint scatterings, bool lampsAlone,
+// Next-event estimation from a surface of reflectance `throughput` * pi over irradiance; before2: squared distance to
+// the vertex before; scatterings: including this one.
+Shadow queueShadowRay(Surface surface, uint triangle, float before2, vec3 throughput, uint scatterings, bool lampsAlone,
                       PathNumbers numbers) {
   Shadow shadow = Shadow(false, vec3(0.0), Ray(vec3(0.0), 0.0, vec3(1.0), 0.0), kNoHit);
   LightSample light;
@@ -91,6 +168,10 @@ Shadow queueShadowRay(Surface surface, uint triangle, vec3 throughput, uint scat
              : ShadowStart(offsetRay(surface.position, surface.geometricNormal, surface.magnitude),
                            surface.geometricNormal, triangle);
   if (!(cosine > 0.0 && dot(light.direction, start.normal) > 0.0)) return shadow;
+#if LAMP_RAYS
+  PathLight lamp = lights[pickedLight];
+  if (isLamp && !light.infinite && isFoundFromLamp(surface, before2, lamp, light.direction)) return shadow;
+#endif
   shadow.light = throughput * light.value * (cosine / kPi);
   if (!isLamp) shadow.light *= powerHeuristic(light.pdf, cosine / kPi);
   shadow.ray =
@@ -106,13 +187,14 @@ vec3 followPath(Surface surface, uint triangle, PathNumbers numbers) {
   vec3 radiance = vec3(0.0), throughput = vec3(1.0);
   Shadow shadow;
   shadow.waits = false;
+  LampRay lampRay;
+  lampRay.waits = false;
   Ray ray;
-  float pdf = 0.0;
+  float pdf = 0.0, before2 = 0.0;
   uint scatterings = 0u;
   bool arrives = true, ends = false;  // at `surface`; after the pending shadow ray
   bool last = false;                  // the next ray only collects light at its end and does not scatter
-  // Each scattering casts a shadow ray and the path's own.
-  for (uint rays = 0u; rays < 2u * (cache.mostSegments + 2u); ++rays) {
+  for (uint rays = 0u; rays < kRaysOfScattering * (cache.mostSegments + 2u); ++rays) {
     if (arrives) {
       arrives = false;
       ++scatterings;
@@ -132,7 +214,12 @@ vec3 followPath(Surface surface, uint triangle, PathNumbers numbers) {
 #endif
 #if NEXT_EVENT
       if (counts(scatterings))
-        shadow = queueShadowRay(surface, triangle, throughput, scatterings, cached && keepsDirectLight(), numbers);
+        shadow =
+            queueShadowRay(surface, triangle, before2, throughput, scatterings, cached && keepsDirectLight(), numbers);
+#endif
+#if LAMP_RAYS
+      if (!cached && counts(scatterings + 1u) && scatterings <= cache.mostSegments)
+        lampRay = queueLampRay(surface.position, scatterings, numbers);
 #endif
       if (!ends) {
         vec3 direction = cosineSample(surface.normal, randomPair(numbers, scatterings, kPurposeScatter));
@@ -156,22 +243,35 @@ vec3 followPath(Surface surface, uint triangle, PathNumbers numbers) {
         }
 #endif
       }
-      if (ends && !shadow.waits) break;
+      if (ends && !shadow.waits && !lampRay.waits) break;
     }
-    // One traversal for both kinds of rays, since drivers inline every call.
-    bool isShadow = shadow.waits;
+    // One traversal for all kinds of rays, since drivers inline every call.
+    bool isShadow = shadow.waits, isLamps = false;
     Ray traced = ray;
-    if (isShadow) traced = shadow.ray;
-    BvhTraversal traversal = beginRay(traced, isShadow ? shadow.skip : triangle);
+    uint skip = triangle;
+    if (isShadow) traced = shadow.ray, skip = shadow.skip;
+#if LAMP_RAYS
+    isLamps = !isShadow && lampRay.waits;
+    if (isLamps) traced = lampRay.ray, skip = kNoHit;
+#endif
+    BvhTraversal traversal = beginRay(traced, skip);
     if (isShadow) traversal.lampEnd = traced.tMax;
     for (int left = bvhNodeCount(); left > 0 && !isDone(traversal); --left) advanceRay(traversal, isShadow);
     if (isShadow) {
       if (traversal.hit.triangle == kNoHit) radiance += shadow.light;
       shadow.waits = false;
-      if (ends) break;
+      if (ends && !shadow.waits && !lampRay.waits) break;
       continue;
     }
     Hit hit = finishRay(traversal, traced.direction);
+#if LAMP_RAYS
+    if (isLamps) {
+      lampRay.waits = false;
+      if (hit.triangle != kNoHit) shadow = queueConnection(lampRay, hit, surface, triangle, throughput);
+      if (ends && !shadow.waits) break;
+      continue;
+    }
+#endif
     if (hit.triangle == kNoHit) {
 #if ENVIRONMENT
       if (counts(scatterings)) {
@@ -186,6 +286,7 @@ vec3 followPath(Surface surface, uint triangle, PathNumbers numbers) {
     }
     surface = surfaceAt(hit.triangle, hit.barycentrics, ray.direction);
     triangle = hit.triangle;
+    before2 = hit.t * hit.t;
 #if EMISSION
     if (counts(scatterings)) {
       vec3 emission = emissionAt(surface.material, hit.triangle, hit.barycentrics);

@@ -21,6 +21,7 @@ layout(std140, binding = BLOCK_CACHE_PATHS) uniform PathBlock { PathConstants tr
 #if BODIES || CLOUDS
 #include "irradiance_cache/body.glsl"
 #endif
+// unordered reflected: each dispatch writes its own part of the picture
 layout(binding = 0) writeonly restrict uniform image2D reflected;
 uniform ivec2 firstPixel;
 uniform int rays;         // per sample of a pixel
@@ -264,9 +265,10 @@ vec3 radianceAlong(Ray ray, uint triangle, vec3 throughput, uint scatterings, Pa
   return sum;
 }
 
-// What the pixel's surface shows of its surroundings.
-vec3 reflectedBy(Surface surface, uint triangle, vec3 view, PathNumbers numbers) {
+// What the pixel's surface shows of its surroundings. alpha: of a coat whose lobe rays are drawn from, else 0.
+vec3 reflectedBy(Surface surface, uint triangle, vec3 view, PathNumbers numbers, out float alpha) {
   vec3 sum = vec3(0.0);
+  alpha = 0.0;
   PathMaterial material = materials[surface.material];
   if (material.kind == PATH_DIFFUSE || material.kind == PATH_NONE) return sum;
   bool isSmooth = material.kind != PATH_COATED && (material.kind != PATH_CONDUCTOR || material.roughness == 0.0);
@@ -308,6 +310,7 @@ vec3 reflectedBy(Surface surface, uint triangle, vec3 view, PathNumbers numbers)
     sum += (1.0 - ofRays) / kPi * coatAlbedo(coat, o.z) * kept;
   }
   if (!(ofRays > 0.0)) return sum;
+  alpha = coat.alpha;
   int count = coat.alpha < 0.01 ? 1 : rays;  // a lobe narrower than a pixel needs no more
   vec2 start = randomPair(numbers, 0u, kPurposeScatter);
   for (int i = 0; i < rays && i < count; ++i) {
@@ -346,22 +349,22 @@ void main() {
   if (any(greaterThanEqual(pixel, tracer.picture.xy))) return;
   int index = pixel.y * tracer.picture.x + pixel.x;
   vec3 sum = vec3(0.0);
-  float passed = 1.0;
+  float alpha = 0.0;  // of a rough coat; -1: a cloud is before the surface
   Hit hit;
   Surface surface;
   if (seenAt(index, hit, surface)) {
     vec3 eye, view;
     rayOf(index, eye, view);
 #if GRIDS
-    if (cloudBefore(eye, view, hit.t, PathNumbers(uint(index), uint(pixelSample), tracer.seed), sum)) passed = 0.0;
+    if (cloudBefore(eye, view, hit.t, PathNumbers(uint(index), uint(pixelSample), tracer.seed), sum)) alpha = -1.0;
     else
 #endif
     {
 #if NORMAL_MAPS
       applyNormalMap(surface, hit.triangle);
 #endif
-      sum = reflectedBy(surface, hit.triangle, view, PathNumbers(uint(index), uint(pixelSample), tracer.seed));
+      sum = reflectedBy(surface, hit.triangle, view, PathNumbers(uint(index), uint(pixelSample), tracer.seed), alpha);
     }
   }
-  imageStore(reflected, pixel, vec4(sum, passed));
+  imageStore(reflected, pixel, vec4(sum, alpha));
 }

@@ -8,7 +8,11 @@ vec3 indirectIrradiance(vec3 position, vec3 normal, vec3 meshNormal) {
 }
 #if BEHIND_MEDIA
 layout(binding = UNIT_REFLECTED) uniform sampler2D reflections;
-vec4 mediaInFront() { return texelFetch(reflections, ivec2(gl_FragCoord.xy), 0); }
+// Alpha: whether the surface is seen, and not a cloud.
+vec4 mediaInFront() {
+  vec4 reflected = texelFetch(reflections, ivec2(gl_FragCoord.xy), 0);
+  return vec4(reflected.rgb, reflected.a < 0.0 ? 0.0 : 1.0);
+}
 #elif INDIRECT_SPECULAR
 #include "lib/coat.glsl"
 layout(binding = UNIT_REFLECTED) uniform sampler2D reflections;

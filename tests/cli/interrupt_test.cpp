@@ -99,6 +99,18 @@ TEST_F(Interrupt, ARefinedSolutionTakesUpItsOwnRows) {
       path("o.sol"), "TERM", 143);
 }
 
+// Also a picture of the technique, which names no file for its solution.
+TEST_F(Interrupt, APictureOfRadiosityTakesUpItsOwnRows) {
+  fs::create_directory(path("pictures"));
+  expectGoesOn("env LUCERNA_REFERENCES='" + path("kept") + "' '" LUCERNA_BINARY "' render '" + path("room.obj") +
+                   "' --technique radiosity --camera 0,1,0.9,0,1,0,70 --size 16x16 --pixel-samples 1"
+                   " --set radiosity.edge=0.6 --set radiosity.visibility=rays --set radiosity.direct=patches"
+                   " --quiet -o '" +
+                   path("pictures/o.pfm") + "'",
+               path("pictures/o.pfm"), "TERM", 143);
+  EXPECT_TRUE(fs::is_empty(path("kept")));
+}
+
 TEST_F(Interrupt, APathTracedPictureGoesOnFromItsFilm) {
   expectGoesOn("'" LUCERNA_BINARY "' render '" + path("room.obj") +
                    "' --technique path --camera 0,1,0.9,0,1,0,70 --size 64x64 --spp 96 --quiet -o '" + path("o.pfm") +

@@ -141,6 +141,20 @@ TEST_F(Measure, BenchErrorReportsAndGoesOnWhereItWas) {
     pareto |= row.at("pareto").get<bool>();
     EXPECT_EQ(row.contains("inside_model"), row.at("technique") != "path");
   }
+  // The sentence at the end: from the fastest picture of the front on, each technique where it is worth the time.
+  const nlohmann::json choices = report.at("choices");
+  ASSERT_FALSE(choices.empty());
+  EXPECT_NE(first.out.find("What to use for a picture's time: "), std::string::npos) << first.out;
+  double from = -1.0;
+  for (const auto& choice : choices) {
+    EXPECT_GT(choice.at("from_ms").get<double>(), from);
+    from = choice.at("from_ms");
+    EXPECT_NE(first.out.find(choice.at("first").get<std::string>() + " (error "), std::string::npos) << first.out;
+    const auto isItsRow = [&](const nlohmann::json& row) {
+      return row.at("label") == choice.at("first") && row.at("pareto") && row.at("fidelity") != "original";
+    };
+    EXPECT_TRUE(std::ranges::any_of(report.at("rows"), isItsRow)) << choice;
+  }
   EXPECT_TRUE(pareto);
   // Settings of a technique are ranked inside its model: what is not on that front is beaten there, and is on no other.
   // Equal within two standard errors is equal, in l2 and in time; what is at the reference's noise is three times that.
@@ -560,6 +574,23 @@ TEST_F(Measure, FeaturesSayWhatLeavingOutSaves) {
   EXPECT_GE(n.at("left_out").size(), 5u);
   EXPECT_LT(n.at("gpu_bytes_without").get<double>(), n.at("gpu_bytes_with").get<double>());
   EXPECT_LE(n.at("max_difference").get<double>(), 1e-5 * n.at("max_radiance").get<double>());
+  EXPECT_EQ(n.at("picture").at("verdict"), "too few pictures to tell");
+  // Path tracing is timed to the same error, and what runs alike differ by is no saving.
+  ASSERT_EQ(RUN_LUCERNA("bench features '" + path("scene.obj") + "' --size 16x8 --frames 6 --technique path --json '" +
+                        path("n.json") + "'")
+                .exitCode,
+            0);
+  const auto p = json("n.json");
+  EXPECT_EQ(p.at("samples"), 8);
+  EXPECT_GT(p.at("variance_with").get<double>(), 0.0);
+  for (const auto& saving : {p.at("picture"), p.at("compile")}) {
+    EXPECT_LE(saving.at("low").get<double>(), saving.at("ratio").get<double>());
+    EXPECT_GE(saving.at("high").get<double>(), saving.at("ratio").get<double>());
+    const double apart = std::abs(std::log(saving.at("ratio").get<double>()));
+    if (apart <= std::log1p(saving.at("same_runs").get<double>())) {
+      EXPECT_EQ(saving.at("verdict"), "no difference") << saving;
+    }
+  }
 }
 
 }  // namespace

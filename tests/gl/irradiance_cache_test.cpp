@@ -347,6 +347,36 @@ TEST_F(IrradianceCacheGl, AWallBesideAFloorUnderALamp) {
       seen.image, [&](const glm::dvec3& p) { return FloorAndWall::irradiance(p, radiance); }, "a floor under a spot");
 }
 
+// Nearly all light comes from a spot on the floor that one path of a thousand meets, but with a thousand times the
+// light: next-event estimation alone shows it as bright squares of single records.
+TEST_F(IrradianceCacheGl, AWallBesideAFloorCloseToALamp) {
+  for (const float radius : {0.0f, 0.04f}) {
+    FloorAndWall room;
+    room.builder.scene().points.push_back({{1.2, 0.05, 0.3}, glm::vec3(5.0f), radius});
+    const auto radiance = [](double x, double z) {
+      const double d2 = (x - 1.2) * (x - 1.2) + 0.05 * 0.05 + (z - 0.3) * (z - 0.3);
+      return 0.8 / kPi * 5.0 * 0.05 / (d2 * std::sqrt(d2));
+    };
+    const Picture seen =
+        picture(room.builder.scene(), room.camera, FloorAndWall::fine(settings(1, 1024, Component::indirect)));
+    room.expect(
+        seen.image, [&](const glm::dvec3& p) { return FloorAndWall::irradiance(p, radiance); },
+        radius > 0.0f ? "a floor close to a lamp with a radius" : "a floor close to a lamp");
+  }
+  FloorAndWall room;
+  room.builder.scene().spots.push_back({{1.0, 0.2, 0.0}, {0.0, -1.0, 0.0}, glm::vec3(9.0f), 0.3, 0.9});
+  const auto radiance = [](double x, double z) {
+    const double d2 = (x - 1.0) * (x - 1.0) + 0.04 + z * z, cosine = 0.2 / std::sqrt(d2);
+    const double t = std::clamp((cosine - std::cos(0.9)) / (std::cos(0.3) - std::cos(0.9)), 0.0, 1.0);
+    return 0.8 / kPi * 9.0 * t * t * (3.0 - 2.0 * t) * cosine / d2;
+  };
+  const Picture seen =
+      picture(room.builder.scene(), room.camera, FloorAndWall::fine(settings(1, 1024, Component::indirect)));
+  room.expect(
+      seen.image, [&](const glm::dvec3& p) { return FloorAndWall::irradiance(p, radiance); },
+      "a floor close to a spot");
+}
+
 TEST_F(IrradianceCacheGl, AWallBesideAPlateThatShines) {
   // The plate itself shines: its light is direct, and there is nothing that reflects it back but what the plate's own
   // albedo does.
@@ -790,7 +820,8 @@ class IrradianceCacheAgainstPaths : public IrradianceCacheGl {
     double noise;  ///< its standard error as relativeError() counts differences
   };
   /// What the path tracer makes of just these scatterings, of Lambert's surfaces, in the centres of pixels.
-  static Reference traced(const Scene& scene, const Camera& camera, Transport transport, std::uint32_t scatterings) {
+  static Reference traced(const Scene& scene, const Camera& camera, Transport transport, std::uint32_t scatterings,
+                          std::uint32_t samples = 256) {
     PathTracer::Settings s;
     s.size = glm::ivec2(64);
     s.transport = transport;
@@ -799,7 +830,7 @@ class IrradianceCacheAgainstPaths : public IrradianceCacheGl {
     s.filter = PixelFilter::centre;
     PathTracer result(context(), library(), scene, s);
     result.setCamera(camera);
-    result.record(256);
+    result.record(samples);
     Reference reference{result.mean(), 0.0};
     Image noisy = result.standardError();
     for (std::size_t i = 0; i < noisy.pixels.size(); ++i) noisy.pixels[i] += reference.mean.pixels[i];
@@ -932,6 +963,25 @@ TEST_F(IrradianceCacheAgainstPaths, ALampAroundTheCorner) {
     EXPECT_LT(nrmse, 0.35);
     expectNear(seen, reference, 0.03, 0.15, "a lamp around the corner");
   }
+}
+
+// Its light arrives by way of surfaces without records, which the camera does not see.
+TEST_F(IrradianceCacheAgainstPaths, ALampCloseToAWallAroundTheCorner) {
+  Scene scene = roomWithACorner();
+  scene.points.front().position = {1.0, 1.2, 5.9};
+  const Camera camera = lookingAt({5.5, 1.0, 1.0}, {1.0, 0.9, 1.2}, 1.1);
+  const auto shown = [&](int samples) {
+    RenderSettings s = settings(kAll, samples, Component::indirect);
+    s.of<IrradianceCacheSettings>().cascades.cells = 32;
+    return picture(scene, camera, s).image;
+  };
+  const Image seen = shown(256);
+  const double noise = relativeError(seen, shown(4096));
+  report("a lamp close to a wall around the corner: noise of 256 paths", noise);
+  EXPECT_LT(noise, 0.08);
+  const std::uint32_t samples = test::longTests() ? 8192 : 1024;
+  expectNear(seen, traced(scene, camera, Transport::indirect, PathTracer::kUnlimited, samples),
+             test::longTests() ? 0.015 : 0.04, 0.15, "a lamp close to a wall around the corner");
 }
 
 TEST_F(IrradianceCacheAgainstPaths, ARoomWithEveryKindOfLight) {

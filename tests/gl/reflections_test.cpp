@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iostream>
 
 namespace lucerna::test {
 namespace {
@@ -99,6 +100,35 @@ TEST_F(ReflectionsTest, GlassIsClear) {
   const Image image = drawn(scene, lookingAt({0, 0, 6}, {0, 0, 0}, 0.25));
   EXPECT_NEAR(image.at(16, 16).y, 3.0f, 1e-3f);
   EXPECT_NEAR(mean(image).y, 3.0, 0.02);  // at the rim some rays are caught inside
+}
+
+// A small bright lamp beside a rough floor: a ray in twenty meets it. Neighbours share what they find, which moves no
+// light from the picture and none to a floor of another coat.
+TEST_F(ReflectionsTest, RoughCoatsHaveNoSpecks) {
+  SceneBuilder builder = floorUnderSky(coated(glm::vec3(0.0f), glm::vec3(0.5f), 0.2f), 0.0f);
+  builder.scene().environment.reset();
+  const int lamp = builder.material(glm::vec3(0.0f)), matt = builder.material(glm::vec3(0.0f));
+  builder.materialAt(lamp).emission = glm::vec3(100.0f);
+  builder.plate({0.0, 1.5, -2.5}, {0.8, 0, 0}, {0, 0.8, 0}, lamp);
+  builder.plate({0.4, 0.001, 0.0}, {0, 0, 8}, {0.6, 0, 0}, matt);
+  const Camera camera = lookingAt({0, 2, 3}, {0, 0, 0}, 0.5);
+  const auto shown = [&](int rays) {
+    RenderSettings s = settings();
+    s.size = {64, 64};
+    s.of<IrradianceCacheSettings>().reflections = rays;
+    return drawn(builder.scene(), camera, s);
+  };
+  const Image few = shown(16), many = shown(1024);
+  double squares = 0.0, all = 0.0;
+  for (std::size_t i = 0; i < few.pixels.size(); ++i) {
+    squares += std::pow(static_cast<double>(few.pixels[i].y) - static_cast<double>(many.pixels[i].y), 2.0);
+    all += std::pow(static_cast<double>(many.pixels[i].y), 2.0);
+    if (many.pixels[i].y == 0.0f) { EXPECT_EQ(few.pixels[i].y, 0.0f); }
+  }
+  std::cout << "[ measured ] rough coat, 16 rays beside 1024: " << std::sqrt(squares / all) << ", mean "
+            << mean(few).y / mean(many).y << "\n";
+  EXPECT_LT(std::sqrt(squares / all), 0.25);
+  EXPECT_NEAR(mean(few).y / mean(many).y, 1.0, 0.03);
 }
 
 /// The open box with a back wall that reflects.

@@ -1,0 +1,38 @@
+#include "radiosity/solution_watch.hpp"
+
+#include "base/hash.hpp"
+#include "scene/fingerprint.hpp"
+
+#include <fmt/format.h>
+
+#include <string_view>
+#include <utility>
+
+namespace lucerna {
+
+namespace {
+thread_local SolutionWatch* innermostSolutionWatch = nullptr;
+}
+
+SolutionWatch::SolutionWatch(std::filesystem::path folder, std::function<bool(const RadiosityStage&)> onStage)
+    : folder_(std::move(folder)),
+      onStage_(std::move(onStage)),
+      outer_(std::exchange(innermostSolutionWatch, this)),
+      prepares_([this] { return !onStage_(RadiosityStage{.kind = RadiosityStage::Kind::direct, .solve = {}}); }) {}
+
+SolutionWatch::~SolutionWatch() { innermostSolutionWatch = outer_; }
+
+std::function<bool(const RadiosityStage&)> SolutionWatch::innermostOnStage() {
+  return innermostSolutionWatch ? innermostSolutionWatch->onStage_ : nullptr;
+}
+
+std::filesystem::path SolutionWatch::checkpointOf(const Scene& scene, const RadiositySolutionSettings& settings) {
+  if (!innermostSolutionWatch || innermostSolutionWatch->folder_.empty()) return {};
+  Hash hash;
+  addScene(hash, scene);
+  hash.add(std::string_view(textOf(settings)));
+  hash.add(static_cast<std::uint64_t>(settings.hemicubes.visibility));
+  return innermostSolutionWatch->folder_ / fmt::format("radiosity_{:016x}.rows", hash.value());
+}
+
+}  // namespace lucerna

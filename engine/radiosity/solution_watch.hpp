@@ -1,0 +1,33 @@
+// Lets a program follow, stop and resume the solutions that frames of the technique radiosity make.
+#pragma once
+
+#include "base/stop_watch.hpp"
+#include "radiosity/solution.hpp"
+
+#include <filesystem>
+#include <functional>
+
+namespace lucerna {
+
+/// During its lifetime, a RadiosityView made on this thread calls `onStage` as solveScene does: false stops it by the
+/// exception Stopped. A solution without a file of its own (radiosity.file) keeps its form factors in `folder` until it
+/// is solved, named by scene and settings, so that the same command resumes from them. Only the innermost watch counts.
+class SolutionWatch {
+ public:
+  SolutionWatch(std::filesystem::path folder, std::function<bool(const RadiosityStage&)> onStage);
+  ~SolutionWatch();
+  SolutionWatch(const SolutionWatch&) = delete;
+  SolutionWatch& operator=(const SolutionWatch&) = delete;
+
+  /// For RadiosityView: the innermost watch's, or empty.
+  static std::function<bool(const RadiosityStage&)> innermostOnStage();
+  static std::filesystem::path checkpointOf(const Scene& scene, const RadiositySolutionSettings& settings);
+
+ private:
+  std::filesystem::path folder_;
+  std::function<bool(const RadiosityStage&)> onStage_;
+  SolutionWatch* outer_;
+  StopWatch prepares_;  ///< before the first stage that reports
+};
+
+}  // namespace lucerna
