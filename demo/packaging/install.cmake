@@ -27,12 +27,18 @@ add_custom_command(OUTPUT ${generated}/lucerna.1.gz
 execute_process(COMMAND ${CMAKE_COMMAND} -E env LC_ALL=C date --utc --rfc-email --date ${LUCERNA_RELEASE_DATE}
                 OUTPUT_VARIABLE LUCERNA_RELEASE_DATE_RFC5322 OUTPUT_STRIP_TRAILING_WHITESPACE
                 COMMAND_ERROR_IS_FATAL ANY)
+# The page of lucerna describes the programs beside it too.
+file(WRITE ${generated}/beside.1 ".so man1/lucerna.1\n")
+add_custom_command(OUTPUT ${generated}/beside.1.gz
+                   COMMAND ${LUCERNA_GZIP} -9nc ${generated}/beside.1 > ${generated}/beside.1.gz
+                   DEPENDS ${generated}/beside.1 VERBATIM)
 configure_file(${packaging}/changelog.in ${generated}/changelog @ONLY)
 add_custom_command(OUTPUT ${generated}/changelog.gz
                    COMMAND ${LUCERNA_GZIP} -9nc ${generated}/changelog > ${generated}/changelog.gz
                    DEPENDS ${generated}/changelog VERBATIM)
 configure_file(${packaging}/${LUCERNA_APP_ID}.metainfo.xml.in ${generated}/${LUCERNA_APP_ID}.metainfo.xml @ONLY)
-add_custom_target(lucerna_pages ALL DEPENDS ${pages} ${generated}/lucerna.1.gz ${generated}/changelog.gz)
+add_custom_target(lucerna_pages ALL DEPENDS ${pages} ${generated}/lucerna.1.gz ${generated}/beside.1.gz
+                  ${generated}/changelog.gz)
 
 # The program and its data, without generators and the READMEs' pictures.
 install(TARGETS ${lucerna_programs} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
@@ -61,6 +67,10 @@ endif()
 set(LUCERNA_ZSH_COMPLETIONS ${CMAKE_INSTALL_DATADIR}/zsh/${zsh_folder}
     CACHE STRING "Where zsh looks for completions, relative to the prefix")
 install(FILES ${generated}/lucerna.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
+foreach(program IN ITEMS bench labs originals)
+  install(FILES ${generated}/beside.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 RENAME lucerna-${program}.1.gz
+          COMPONENT program)
+endforeach()
 install(FILES ${generated}/lucerna.bash
         DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME lucerna COMPONENT program)
 install(FILES ${generated}/_lucerna DESTINATION ${LUCERNA_ZSH_COMPLETIONS} COMPONENT program)
@@ -103,8 +113,8 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "libgl1-mesa-dri, libosmesa6")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "gnuplot-nox | gnuplot")
 set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "\
 Lucerna walks through scenes lit by global illumination, renders pictures of
-them and measures what each technique costs and how far it is from the reference.
-It re-creates light propagation volumes, reflective shadow maps, radiosity by
+them and measures what each technique costs and how far it is from the
+reference. It re-creates light propagation volumes, reflective shadow maps, radiosity by
 hemicubes and path tracing of participating media, as published and physically
 correct. No GPU is needed: Mesa's software renderer will do.")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME liblucerna-dev)

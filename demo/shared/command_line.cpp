@@ -251,6 +251,13 @@ int flushed(int code) {
 
 /// Checks in one place: numbers in options that are not finite, or absurdly large, are rejected before a command sees
 /// them.
+void checkScenes(const CLI::App& app) {
+  for (const CLI::Option* option : app.get_options())
+    if (option->get_name() == "SCENE")
+      for (const std::string& text : option->results()) checkSceneName(text);
+  for (const CLI::App* command : app.get_subcommands()) checkScenes(*command);
+}
+
 void checkNumbers(const CLI::App& app) {
   constexpr double kMost = 1e12;
   for (const CLI::Option* option : app.get_options()) {
@@ -324,6 +331,7 @@ int runProgram(const Program& program, int argc, char** argv,
   }
   try {
     checkNumbers(app);
+    checkScenes(app);
     const int code = flushed(commands.work()());
     const std::string errors = gl::takePendingErrors();
     if (errors.empty()) return code;

@@ -121,8 +121,10 @@ bool interrupted();
 /// The signals end the program at once from here on: for work that keeps no state. Throws Stopped if one has come.
 void endAtInterrupt();
 /// For the lifetime of the result, solutions of the technique radiosity stop at an interruption, or if `goOn` is false;
-/// they keep their form factors in the folder of cached references, from which the same command goes on.
-std::unique_ptr<SolutionWatch> watchSolutions(std::function<bool(const RadiosityStage&)> goOn = {});
+/// they keep their form factors in the folder of cached references, from which the same command goes on. keepsRows:
+/// until the end of that lifetime, so that other light needs no hemicubes.
+std::unique_ptr<SolutionWatch> watchSolutions(std::function<bool(const RadiosityStage&)> goOn = {},
+                                              bool keepsRows = false);
 int exitCode();  ///< 0, or 128 + the signal's number: 130 after Ctrl-C, 143 after SIGTERM
 
 nlohmann::ordered_json stagesJson(const std::vector<gl::StageStatistics>& stages);

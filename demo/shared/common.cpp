@@ -19,14 +19,15 @@
 
 namespace lucerna::demo {
 
-std::unique_ptr<SolutionWatch> watchSolutions(std::function<bool(const RadiosityStage&)> goOn) {
+std::unique_ptr<SolutionWatch> watchSolutions(std::function<bool(const RadiosityStage&)> goOn, bool keepsRows) {
   std::filesystem::path folder = measure::ReferenceCache::defaultFolder();
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) folder.clear();  // nothing is kept
-  return std::make_unique<SolutionWatch>(folder, [goOn = std::move(goOn)](const RadiosityStage& stage) {
-    return !interrupted() && (!goOn || goOn(stage));
-  });
+  return std::make_unique<SolutionWatch>(
+      folder,
+      [goOn = std::move(goOn)](const RadiosityStage& stage) { return !interrupted() && (!goOn || goOn(stage)); },
+      keepsRows ? SolutionWatch::Rows::keep : SolutionWatch::Rows::resume);
 }
 
 // ---------------------------------------------------------------------------------------------------- options

@@ -23,10 +23,18 @@ std::string sceneFileOf(const std::string& text) {
   std::error_code error;
   if (text.empty() || fs::exists(text, error) || fs::path(text).has_parent_path()) return text;
   const auto scenes = shippedScenes();
-  if (const auto found = scenes.find(text); found != scenes.end()) return found->second.string();
-  if (fs::path(text).has_extension() || scenes.empty()) return text;
+  const auto found = scenes.find(text);
+  return found == scenes.end() ? text : found->second.string();
+}
+
+void checkSceneName(const std::string& text) {
+  std::error_code error;
+  const fs::path file(text);
+  if (text.empty() || file.has_parent_path() || file.has_extension() || fs::exists(file, error)) return;
+  const auto scenes = shippedScenes();
+  if (scenes.empty() || scenes.contains(text)) return;
   std::string known;
-  for (const auto& [name, file] : scenes) known += (known.empty() ? "" : ", ") + name;
+  for (const auto& [name, path] : scenes) known += (known.empty() ? "" : ", ") + name;
   throwBadInput("{}: no such file, and no shipped scene: {}", text, known);
 }
 

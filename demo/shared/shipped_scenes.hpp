@@ -11,7 +11,10 @@ namespace lucerna::demo {
 std::map<std::string, std::filesystem::path> shippedScenes();
 
 /// The file that an argument SCENE means: the file of that name if there is one; else the shipped scene, if the text is
-/// the name of one; else the text. Throws Error(badInput) listing the names if it is a bare word and none of them.
+/// the name of one; else the text.
 std::string sceneFileOf(const std::string& text);
+
+/// Throws Error(badInput) listing the names if the text is a bare word that names neither.
+void checkSceneName(const std::string& text);
 
 }  // namespace lucerna::demo

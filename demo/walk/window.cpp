@@ -61,7 +61,7 @@ WalkWindow::WalkWindow(const WalkOptions& options, Host& host, const gl::Context
       overlay_(programs, state_),
       reference_(context, programs, state_),
       recorder_(state_),
-      solutions_(watchSolutions([this](const RadiosityStage& stage) { return goesOnSolving(stage); })) {
+      solutions_(watchSolutions([this](const RadiosityStage& stage) { return goesOnSolving(stage); }, true)) {
   state_.rendererName = context.capabilities().renderer;
   if (!options.playInput.empty()) player_.emplace(options.playInput);
   playedSize_ = parseSize(options.picture.size);
@@ -271,7 +271,7 @@ void WalkWindow::stepThrough(std::vector<Edit>& from, std::vector<Edit>& to) {
   to.push_back(std::exchange(lastEdit_, from.back()));
   from.pop_back();
   for (std::size_t i = 0; i < 2; ++i) state_.sides[i].options = lastEdit_.options[i];
-  setLights(state_, lastEdit_.lights);
+  if (!state_.scene->motion) setLights(state_, lastEdit_.lights);
   state_.say(fmt::format("{} {}", lights, &from == &state_.undo ? "as before" : "made again"));
 }
 
@@ -363,6 +363,7 @@ void WalkWindow::loadWantedScene() {
   if (!state_.sceneToLoad) return;
   const fs::path wanted = *std::exchange(state_.sceneToLoad, std::nullopt);
   try {
+    checkSceneName(wanted.string());
     const fs::path file = sceneFileOf(wanted.string());
     breathe("loading " + file.filename().string());
     auto scene = std::make_unique<Scene>(loadScene(file));

@@ -32,7 +32,7 @@ RadiositySolution solveOrLoad(const gl::Context& context, gl::ProgramLibrary& pr
   RadiositySolution solution =
       solveScene(context, programs, scene, settings.solution, checkpoint, SolutionWatch::innermostOnStage());
   if (!settings.file.empty()) saveSolution(settings.file, scene, solution);
-  if (!checkpoint.empty()) removeCheckpoints(checkpoint);
+  SolutionWatch::solved(checkpoint);
   return solution;
 }
 

@@ -14,13 +14,30 @@ namespace {
 thread_local SolutionWatch* innermostSolutionWatch = nullptr;
 }
 
-SolutionWatch::SolutionWatch(std::filesystem::path folder, std::function<bool(const RadiosityStage&)> onStage)
+SolutionWatch::SolutionWatch(std::filesystem::path folder, std::function<bool(const RadiosityStage&)> onStage,
+                             Rows rows)
     : folder_(std::move(folder)),
       onStage_(std::move(onStage)),
+      rows_(rows),
       outer_(std::exchange(innermostSolutionWatch, this)),
       prepares_([this] { return !onStage_(RadiosityStage{.kind = RadiosityStage::Kind::direct, .solve = {}}); }) {}
 
-SolutionWatch::~SolutionWatch() { innermostSolutionWatch = outer_; }
+SolutionWatch::~SolutionWatch() {
+  innermostSolutionWatch = outer_;
+  for (const std::filesystem::path& file : kept_) removeCheckpoints(file);
+}
+
+bool SolutionWatch::keeps(const RadiositySolutionSettings& settings) {
+  return innermostSolutionWatch->rows_ == Rows::keep && settings.refinements == 0;
+}
+
+void SolutionWatch::solved(const std::filesystem::path& checkpoint) {
+  if (checkpoint.empty()) return;
+  if (innermostSolutionWatch && innermostSolutionWatch->rows_ == Rows::keep &&
+      checkpoint.parent_path() == innermostSolutionWatch->folder_)
+    innermostSolutionWatch->kept_.insert(checkpoint);
+  else removeCheckpoints(checkpoint);
+}
 
 std::function<bool(const RadiosityStage&)> SolutionWatch::innermostOnStage() {
   return innermostSolutionWatch ? innermostSolutionWatch->onStage_ : nullptr;
@@ -29,7 +46,8 @@ std::function<bool(const RadiosityStage&)> SolutionWatch::innermostOnStage() {
 std::filesystem::path SolutionWatch::checkpointOf(const Scene& scene, const RadiositySolutionSettings& settings) {
   if (!innermostSolutionWatch || innermostSolutionWatch->folder_.empty()) return {};
   Hash hash;
-  addScene(hash, scene);
+  if (keeps(settings)) addSurfaces(hash, scene);
+  else addScene(hash, scene);
   hash.add(std::string_view(textOf(settings)));
   hash.add(static_cast<std::uint64_t>(settings.hemicubes.visibility));
   return innermostSolutionWatch->folder_ / fmt::format("radiosity_{:016x}.rows", hash.value());

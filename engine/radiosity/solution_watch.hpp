@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <set>
 
 namespace lucerna {
 
@@ -14,7 +15,11 @@ namespace lucerna {
 /// is solved, named by scene and settings, so that the same command resumes from them. Only the innermost watch counts.
 class SolutionWatch {
  public:
-  SolutionWatch(std::filesystem::path folder, std::function<bool(const RadiosityStage&)> onStage);
+  /// Keeps: form factors of solved scenes stay for the watch's lifetime, so that the same surfaces are lit anew without
+  /// hemicubes.
+  enum class Rows { resume, keep };
+  SolutionWatch(std::filesystem::path folder, std::function<bool(const RadiosityStage&)> onStage,
+                Rows rows = Rows::resume);
   ~SolutionWatch();
   SolutionWatch(const SolutionWatch&) = delete;
   SolutionWatch& operator=(const SolutionWatch&) = delete;
@@ -22,10 +27,17 @@ class SolutionWatch {
   /// For RadiosityView: the innermost watch's, or empty.
   static std::function<bool(const RadiosityStage&)> innermostOnStage();
   static std::filesystem::path checkpointOf(const Scene& scene, const RadiositySolutionSettings& settings);
+  /// The scene is solved: removes its form factors, at once or at the watch's end.
+  static void solved(const std::filesystem::path& checkpoint);
 
  private:
+  /// Refined meshes depend on the light.
+  static bool keeps(const RadiositySolutionSettings& settings);
+
   std::filesystem::path folder_;
   std::function<bool(const RadiosityStage&)> onStage_;
+  Rows rows_;
+  std::set<std::filesystem::path> kept_;
   SolutionWatch* outer_;
   StopWatch prepares_;  ///< before the first stage that reports
 };

@@ -40,7 +40,7 @@ void add(Hash& h, const Medium& m) {
 
 }  // namespace
 
-void addScene(Hash& h, const Scene& scene) {
+void addSurfaces(Hash& h, const Scene& scene) {
   for (const Vertex& v : scene.vertices) h.add(v.position), h.add(v.texCoord), h.add(v.normal);
   h.bytes(scene.indices.data(), scene.indices.size() * sizeof scene.indices[0]);
   for (const Mesh& m : scene.meshes) h.add(m.firstIndex), h.add(m.indexCount), h.add(m.material);
@@ -49,6 +49,10 @@ void addScene(Hash& h, const Scene& scene) {
     h.add(t.bitmap.width), h.add(t.bitmap.height), h.add(t.bitmap.hasAlpha);
     h.bytes(t.bitmap.rgba.data(), t.bitmap.rgba.size());
   }
+}
+
+void addScene(Hash& h, const Scene& scene) {
+  addSurfaces(h, scene);
   h.add(scene.sun.has_value());
   if (scene.sun) h.add(scene.sun->direction), h.add(scene.sun->irradiance), h.add(scene.sun->angularDiameter);
   for (const SpotLight& l : scene.spots)

@@ -7,6 +7,8 @@
 
 namespace lucerna {
 
+/// Geometry, materials and textures alone.
+void addSurfaces(Hash& hash, const Scene& scene);
 /// Everything that affects light: not names, cameras, exposure or camera paths.
 void addScene(Hash& hash, const Scene& scene);
 void addCamera(Hash& hash, const Camera& camera);

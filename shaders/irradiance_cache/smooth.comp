@@ -5,7 +5,7 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "lib/clamped_int.glsl"
 #include "forward/visible.glsl"
-layout(binding = UNIT_REFLECTED) uniform sampler2D reflections;  // alpha: of a coat's lobe; up to 0: nothing is averaged
+layout(binding = UNIT_REFLECTED) uniform sampler2D reflections;  // alpha: of a coat's lobe; <= 0: not averaged
 layout(rgba32f, binding = 0) writeonly restrict uniform image2D smoothed;
 uniform ivec2 along;
 

@@ -67,7 +67,7 @@ TEST_F(Installed, HasWhatTheProgramNeedsAndNothingElse) {
   for (const char* name :
        {"bin/lucerna", "share/lucerna/shaders/forward/surface.frag", "share/lucerna/assets/atrium/atrium.json",
         "share/lucerna/keyFrames/atrium.txt", "include/lucerna/base/error.hpp", "include/lucerna/shared/lights.h",
-        "share/man/man1/lucerna.1.gz", "share/bash-completion/completions/lucerna",
+        "share/man/man1/lucerna.1.gz", "share/man/man1/lucerna-bench.1.gz", "share/bash-completion/completions/lucerna",
         "share/fish/vendor_completions.d/lucerna.fish", "share/applications/alt.lucerna.Lucerna.desktop"})
     EXPECT_TRUE(fs::exists(prefix() / name)) << name;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(prefix())) {

@@ -298,7 +298,8 @@ TEST_F(Measure, TechniquesAreJudgedByTheLightThatTheyAreGiven) {
     std::ofstream(path("lit.obj")) << kMeasuredScene
                                    << "v -1 2 -1\nv 1 2 -1\nv 1 2 1\nv -1 2 1\nusemtl lamp\nf -4/1 -3/2 -2/3 -1/4\n";
     std::ofstream(path("lit.json"))
-        << R"({"model": "lit.obj", "sun": {"direction": [0.2, -1, -0.3], "irradiance": [3, 3, 3]}})";
+        << R"({"model": "lit.obj", "sun": {"direction": [0.2, -1, -0.3], "irradiance": [3, 3, 3]},
+               "camera": {"position": [2.5, 3, 6], "target": [0, 1, 0], "fov": 50}})";
     fs::remove_all(path("out"));
     const RunResult result =
         RUN_LUCERNA("bench error '" + path("lit.json") +
