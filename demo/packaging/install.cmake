@@ -114,9 +114,9 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "gnuplot-nox | gnuplot")
 set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "\
 Lucerna walks through scenes lit by global illumination, renders pictures of
 them and measures what each technique costs and how far it is from the
-reference. It re-creates light propagation volumes, reflective shadow maps, radiosity by
-hemicubes and path tracing of participating media, as published and physically
-correct. No GPU is needed: Mesa's software renderer will do.")
+reference. It re-creates light propagation volumes, reflective shadow maps,
+radiosity by hemicubes and path tracing of participating media, as published
+and physically correct. No GPU is needed: Mesa's software renderer will do.")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME liblucerna-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "lucerna (= ${PROJECT_VERSION}), libglew-dev, libglfw3-dev, libglm-dev, \
