@@ -119,7 +119,8 @@ int runInfo(const InfoOptions& options) {
 
 Work addInfo(Command app) {
   auto options = std::make_shared<InfoOptions>();
-  app.addOption("SCENE", options->scene, "a scene file: JSON, OBJ, glTF, PLY, ...").scene();
+  app.addOption("SCENE", options->scene, "a scene file (JSON, OBJ, glTF, PLY, ...), or the name of a shipped scene")
+      .scene();
   app.addFlag("--devices", options->devices, "list EGL's devices and mark the one that is tried first");
   app.addFlag("--settings", options->settings,
               "print every setting and deviation, with ranges, defaults, units and sources (docs/settings.md)");

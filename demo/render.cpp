@@ -187,7 +187,10 @@ int runRender(RenderOptions options) {
 
 Work addRender(Command app) {
   auto options = std::make_shared<RenderOptions>();
-  app.addOption("SCENE", options->scene.file, "a scene file: JSON, OBJ, glTF, PLY, ...").required().scene();
+  app.addOption("SCENE", options->scene.file,
+                "a scene file (JSON, OBJ, glTF, PLY, ...), or the name of a shipped scene")
+      .required()
+      .scene();
   app.addOption("--camera", options->scene.camera,
                 "a camera's name, or px,py,pz,tx,ty,tz,fov (position, target, degrees)");
   app.addOption("-o,--output", options->output,

@@ -186,14 +186,14 @@ nlohmann::ordered_json savingJson(const Saving& s) {
           {"low", s.low},
           {"high", s.high},
           {"same_runs", s.sameRuns},
-          {"verdict", std::string(nameOf(s.verdict))}};
+          {"verdict", std::string(lucerna::nameOf(s.verdict))}};
 }
 
 std::string savingText(const Saving& s) {
   using Verdict = Saving::Verdict;
   std::string text = fmt::format("{:>8.3f}", s.ratio);
   if (std::isfinite(s.low)) text += fmt::format(" ({:.3f} to {:.3f})", s.low, s.high);
-  text += fmt::format("  {}", nameOf(s.verdict));
+  text += fmt::format("  {}", lucerna::nameOf(s.verdict));
   if (s.verdict == Verdict::saves || s.verdict == Verdict::costs)
     text += fmt::format(" {:.1f} %", 100.0 * std::abs(1.0 - s.ratio));
   if (std::isfinite(s.sameRuns)) text += fmt::format("; runs alike differ by {:.1f} %", 100.0 * s.sameRuns);

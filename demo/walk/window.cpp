@@ -460,7 +460,13 @@ void WalkWindow::make(SideState& side) {
     }
     side.options = side.built;
     if (!side.renderer) side.failedAs = wanted;
-    state_.say("stopped; settings as before");
+    if (changeOf(lastEdit_.lights, lightsOf(state_)).any() && !state_.scene->motion) {
+      // It was for other lights: those of the renderer that stays.
+      setLights(state_, lastEdit_.lights);
+      shownLights_ = lastEdit_.lights;
+      side.builtAs = textOf(side.options) + fmt::format(" {}", state_.sceneVersion);
+    }
+    state_.say("stopped; settings and light as before");
   }
 }
 
@@ -480,6 +486,11 @@ void WalkWindow::makeReady() {
   if (std::exchange(state_.lpvStepsWanted, false)) measureLpvSteps();
   for (int i = 0; i < 2; ++i)
     if (i == 0 || state_.isVisible(i)) make(state_.sides[static_cast<std::size_t>(i)]);
+}
+
+bool WalkWindow::showsLpvStep() const {
+  const SideState& shown = state_.sides[static_cast<std::size_t>(state_.shown)];
+  return state_.lpvSteps && state_.lpvStep >= 0 && shown.renderer && volumeOf(shown.renderer->technique());
 }
 
 void WalkWindow::measureLpvSteps() {
@@ -591,8 +602,7 @@ void WalkWindow::showDebugView(Compare::Inputs& inputs) {
     inputs.left = {&stageView_->record(picture, state_.stageLayer, std::exp2(state_.stageFactor), state_.scene->bounds),
                    Show::values, nullptr};
   };
-  if (state_.lpvSteps && state_.lpvStep >= 0)
-    show(state_.lpvSteps->picture(std::min(state_.lpvStep, state_.lpvSteps->steps())));
+  if (showsLpvStep()) show(state_.lpvSteps->picture(std::min(state_.lpvStep, state_.lpvSteps->steps())));
   if (!state_.stage.empty() && shown.renderer) {
     for (const StagePicture& picture : shown.renderer->stagePictures())
       if (picture.name == state_.stage) show(picture);
@@ -617,7 +627,7 @@ void WalkWindow::compose() {
       state_.reference && state_.liveReferenceOn && state_.reference->ready() && still_ >= kStillFrames;
   const bool shows = state_.show == Show::picture || (referenceThere && radianceOf(state_.shown) &&
                                                       radianceOf(state_.shown)->size2d() == state_.reference->size());
-  const bool stage = (!state_.stage.empty() || (state_.lpvSteps && state_.lpvStep >= 0)) && shown.renderer;
+  const bool stage = (!state_.stage.empty() || showsLpvStep()) && shown.renderer;
   const bool counts = state_.countView != CountView::none && shown.renderer;
   const bool plain = !stage && !counts && state_.layout == Layout::one && (state_.show == Show::picture || !shows) &&
                      state_.zoom == 1.0f && !state_.magnifier &&

@@ -49,6 +49,7 @@ class WalkWindow {
   void makeReady();
   void make(SideState& side);
   void measureLpvSteps();
+  bool showsLpvStep() const;
   void draw();
   void makeReference(double frameSeconds);
   bool allSettled() const;

@@ -9,6 +9,7 @@
 #include "radiosity/hemicubes.hpp"
 #include "radiosity/backs.hpp"
 #include "radiosity/row_file.hpp"
+#include "radiosity/solution_watch.hpp"
 #include "scene/features.hpp"
 
 #include <algorithm>
@@ -179,6 +180,8 @@ class MeshSolver {
   /// The checkpoint, if there is to be one; adds the rows that it holds.
   std::unique_ptr<RowFile> openCheckpoint(std::uint64_t fingerprint, FormFactors& factors) const {
     if (input_.checkpoint.empty()) return nullptr;
+    if (SolutionWatch::isKept(input_.checkpoint) && RowFile::fingerprintOf(input_.checkpoint) != fingerprint)
+      std::filesystem::remove(input_.checkpoint);
     return std::make_unique<RowFile>(input_.checkpoint, fingerprint, static_cast<std::uint32_t>(count_),
                                      [&](const FormFactorRows& rows) { add(rows, factors); });
   }

@@ -39,6 +39,10 @@ void SolutionWatch::solved(const std::filesystem::path& checkpoint) {
   else removeCheckpoints(checkpoint);
 }
 
+bool SolutionWatch::isKept(const std::filesystem::path& checkpoint) {
+  return innermostSolutionWatch && innermostSolutionWatch->kept_.contains(checkpoint);
+}
+
 std::function<bool(const RadiosityStage&)> SolutionWatch::innermostOnStage() {
   return innermostSolutionWatch ? innermostSolutionWatch->onStage_ : nullptr;
 }

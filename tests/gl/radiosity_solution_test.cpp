@@ -1,9 +1,12 @@
 // Whole solutions from the GPU's form factors against exact answers; checkpoints and files.
 #include "base/error.hpp"
 #include "radiosity/row_file.hpp"
+#include "radiosity/radiosity_view.hpp"
 #include "radiosity/solution.hpp"
+#include "radiosity/solution_watch.hpp"
 #include "support/gl_fixture.hpp"
 #include "support/radiosity_scenes.hpp"
+#include "support/small_scenes.hpp"
 #include "support/temp_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -174,6 +177,37 @@ TEST_F(RadiositySolutions, AResumedRunEqualsAnUninterruptedOne) {
   std::ofstream(folder.path() / "notes") << "not a checkpoint, but somebody's notes";
   EXPECT_THROW(solve(scene, settings, folder.path() / "notes"), Error);
   EXPECT_EQ(std::filesystem::file_size(folder.path() / "notes"), 38u);
+}
+
+// A window lights the same surfaces anew: form factors are those of the first solution, and the bits those of one made
+// from nothing. At its end nothing is left behind.
+TEST_F(RadiositySolutions, OtherLightNeedsNoHemicubesWhereRowsAreKept) {
+  const test::TempFolder folder;
+  Scene scene = test::openBox();
+  RadiosityView::Settings settings;
+  settings.solution.patches.longestEdge = 2.5;
+  settings.solution.hemicubes.resolution = 32;
+  settings.solution.hemicubes.visibility = HemicubeVisibility::raster;
+  const RadiosityView dusk(context(), library(), scene, settings);
+  EXPECT_GT(dusk.solution().hemicubes, 0u);
+  scene.sun->direction = glm::normalize(scene.sun->direction + glm::dvec3(0.0, -0.2, 0.0));
+  const RadiosityView noon(context(), library(), scene, settings);
+  {
+    const SolutionWatch watch(
+        folder.path(), [](const RadiosityStage&) { return true; }, SolutionWatch::Rows::keep);
+    Scene turned = test::openBox();
+    const RadiosityView first(context(), library(), turned, settings);
+    EXPECT_TRUE(first.solution().exitance == dusk.solution().exitance);
+    turned.sun->direction = scene.sun->direction;
+    const RadiosityView second(context(), library(), turned, settings);
+    EXPECT_EQ(second.solution().hemicubes, 0u);
+    EXPECT_TRUE(second.solution().exitance == noon.solution().exitance);
+    EXPECT_FALSE(second.solution().exitance == dusk.solution().exitance);
+    turned.sun->direction = glm::normalize(glm::dvec3(0.5, -0.5, 0.5));  // onto walls from behind: other patches
+    EXPECT_GT(RadiosityView(context(), library(), turned, settings).solution().hemicubes, 0u);
+    EXPECT_NE(folder.listing(), "");
+  }
+  EXPECT_EQ(folder.listing(), "");
 }
 
 TEST_F(RadiositySolutions, FilesGiveBackWhatWasSaved) {
