@@ -29,7 +29,7 @@ class SolutionWatch {
   static std::filesystem::path checkpointOf(const Scene& scene, const RadiositySolutionSettings& settings);
   /// The scene is solved: removes its form factors, at once or at the watch's end.
   static void solved(const std::filesystem::path& checkpoint);
-  /// Whether these are kept from an earlier solution; light from behind makes other patches, and then they are of no use.
+  /// Whether these are kept from an earlier solution. Light from behind makes other patches: then they are of no use.
   static bool isKept(const std::filesystem::path& checkpoint);
 
  private:

@@ -90,8 +90,8 @@ TEST(Completions, OfferWhatTheProgramTakes) {
     const char* option;
   };
   for (const Case& c :
-       {Case{"render x.obj -o x.png", "--component"}, Case{"render x.obj -o x.png", "--fidelity"}, Case{"walk", "--technique"},
-        Case{"bench tables", "--original"}, Case{"bench pictures -o x.png", "--original"},
+       {Case{"render x.obj -o x.png", "--component"}, Case{"render x.obj -o x.png", "--fidelity"},
+        Case{"walk", "--technique"}, Case{"bench tables", "--original"}, Case{"bench pictures -o x.png", "--original"},
         Case{"bench pictures -o x.png --original lpv", "--fidelity"}, Case{"bench all --out x", "--parts"},
         Case{"bench error", "--techniques"}, Case{"radiosity solve scene.obj x", "--solver"},
         Case{"radiosity solve x x", "--fidelity"}, Case{"radiosity show x", "--mapping"}, Case{"info", "--host"}}) {
