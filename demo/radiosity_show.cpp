@@ -63,7 +63,9 @@ constexpr double kRest = 0.25;  // seconds between looks at whether the program 
 
 void walkAround(Host& host, gl::ProgramLibrary& programs, Shown shown, const Camera& camera) {
   watchForInterrupt();
-  auto& [triangles, display, textures] = shown;
+  const std::span<const RadTriangle> triangles = shown.triangles;
+  RadDisplay& display = shown.display;
+  RadTextures& textures = shown.textures;
   FreeCamera freeCamera(camera, 0.08 * diagonalOf(triangles));
   glm::ivec2 size = host.framebufferSize();
   auto view = std::make_unique<RadView>(programs, size);

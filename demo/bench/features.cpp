@@ -153,7 +153,7 @@ FeaturesResult measureFeatures(const gl::Context& context, const Scene& scene, c
   }
   for (int i = 0; i < frames && !interrupted(); ++i) {
     for (Run* run : runs) run->draw(camera);
-    std::ranges::rotate(runs, runs.begin() + 1);  // other load on the machine affects all alike
+    std::rotate(runs.begin(), runs.begin() + 1, runs.end());  // other load on the machine affects all alike
   }
   for (Run* run : runs) run->findVariance();
   const auto compileMs = [](const Run& run) { return 1e3 * run.programs.statistics().compileSeconds; };
