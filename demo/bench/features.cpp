@@ -195,8 +195,9 @@ std::string savingText(const Saving& s) {
   if (std::isfinite(s.low)) text += fmt::format(" ({:.3f} to {:.3f})", s.low, s.high);
   text += fmt::format("  {}", lucerna::nameOf(s.verdict));
   if (s.verdict == Verdict::saves || s.verdict == Verdict::costs)
-    text += fmt::format(" {:.1f} %", 100.0 * std::abs(1.0 - s.ratio));
-  if (std::isfinite(s.sameRuns)) text += fmt::format("; runs alike differ by {:.1f} %", 100.0 * s.sameRuns);
+    text +=
+        fmt::format(" {:.1f} %, a factor of {:.2f}", 100.0 * std::abs(1.0 - s.ratio), std::max(s.ratio, 1.0 / s.ratio));
+  if (std::isfinite(s.sameRuns)) text += fmt::format("; two runs alike differ by {:.2f}", 1.0 + s.sameRuns);
   return text;
 }
 
