@@ -171,47 +171,30 @@ std::vector<gl::Lines::Line> recordsOf(const IrradianceCache& cache, const Rende
 }  // namespace
 
 std::vector<gl::Lines::Line> boxesOf(const Bvh& bvh, const glm::dvec3& origin, int level, int most) {
-  struct Box {
-    glm::vec3 low, high;
-    bool isLeaf;
-    float size() const { return glm::length(high - low); }
-  };
-  std::vector<Box> boxes;
-  const glm::vec3 offset(bvh.origin - origin);
+  std::vector<std::pair<Bounds, bool>> boxes;  // and whether they are leaves
   std::vector<std::pair<std::uint32_t, int>> open{{0u, 0}};  // nodes, with their level
   while (!open.empty()) {
     const auto [index, depth] = open.back();
     open.pop_back();
     const shared::BvhNode& node = bvh.nodes[index];
-    const std::uint32_t inner = node.exponents >> 24;
-    std::uint32_t child = node.firstChild;
-    for (unsigned k = 0; k < BVH_WIDTH; ++k) {
-      const auto byteOf = [&](const auto& words, unsigned first) {
-        return words[first + k / 4] >> 8 * (k % 4) & 0xffu;
-      };
-      if (byteOf(node.meta, 0) == 0) continue;
-      const bool isNode = (inner >> k & 1u) != 0;
-      if (isNode && depth < level) {
-        open.emplace_back(child++, depth + 1);
-        continue;
-      }
-      child += isNode ? 1 : 0;
-      Box box{offset, offset, !isNode};
-      for (int axis = 0; axis < 3; ++axis) {
-        const float step = std::ldexp(1.0f, static_cast<int>(node.exponents >> 8 * axis & 0xffu) - 127);
-        const unsigned first = 2 * static_cast<unsigned>(axis);
-        box.low[axis] += node.origin[axis] + step * static_cast<float>(byteOf(node.low, first));
-        box.high[axis] += node.origin[axis] + step * static_cast<float>(byteOf(node.high, first));
-      }
-      boxes.push_back(box);
+    std::uint32_t next = node.firstChild;
+    for (std::size_t k = 0; k < BVH_WIDTH; ++k) {
+      if ((node.meta[k / 4] >> 8 * (k % 4) & 0xffu) == 0) continue;
+      const bool isNode = (node.exponents >> (24 + k) & 1u) != 0;
+      if (isNode && depth < level) open.emplace_back(next, depth + 1);
+      else boxes.emplace_back(boundsOfChild(node, k), !isNode);
+      next += isNode ? 1 : 0;
     }
   }
-  std::ranges::stable_sort(boxes, [](const Box& a, const Box& b) { return a.size() > b.size(); });
+  std::ranges::stable_sort(boxes, [](const auto& a, const auto& b) {
+    return glm::length(a.first.extent()) > glm::length(b.first.extent());
+  });
   if (boxes.size() > static_cast<std::size_t>(most)) boxes.resize(static_cast<std::size_t>(most));
+  const glm::dvec3 offset = bvh.origin - origin;
   std::vector<gl::Lines::Line> lines;
-  for (const Box& box : boxes)
-    addBox(lines, box.low, box.high,
-           box.isLeaf ? glm::vec4(0.4f, 0.9f, 0.4f, 0.7f) : glm::vec4(1.0f, 0.7f, 0.2f, 0.7f));
+  for (const auto& [box, isLeaf] : boxes)
+    addBox(lines, glm::vec3(box.min + offset), glm::vec3(box.max + offset),
+           isLeaf ? glm::vec4(0.4f, 0.9f, 0.4f, 0.7f) : glm::vec4(1.0f, 0.7f, 0.2f, 0.7f));
   return lines;
 }
 

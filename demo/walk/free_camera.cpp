@@ -11,8 +11,6 @@ constexpr double kRadiansPerPixel = 0.003, kOrbitPerPixel = 0.008;
 constexpr double kSteepest = 1.55;  // just short of straight up, where the horizon would flip
 constexpr double kDollyPerStep = 0.85;  // of the distance
 
-bool holds(const HostInput& input, MouseButton button) { return input.buttons[static_cast<std::size_t>(button)]; }
-
 }  // namespace
 
 void FreeCamera::turn(const glm::dvec2& radians) {
@@ -33,18 +31,18 @@ void FreeCamera::move(const HostInput& input, double seconds) {
 }
 
 void FreeCamera::look(const HostInput& input) {
-  if (holds(input, MouseButton::left) && input.mouseDelta != glm::dvec2(0.0)) turn(kRadiansPerPixel * input.mouseDelta);
+  if (input.holds(MouseButton::left) && input.mouseDelta != glm::dvec2(0.0)) turn(kRadiansPerPixel * input.mouseDelta);
 }
 
 void FreeCamera::orbit(const HostInput& input, double distance, int height) {
-  const bool pans = holds(input, MouseButton::middle) || (holds(input, MouseButton::left) && input.fast);
+  const bool pans = input.holds(MouseButton::middle) || (input.holds(MouseButton::left) && input.fast);
   if (pans) {
     const double seen = camera_.isOrthographic() ? static_cast<double>(camera_.orthographicHeight)
                                                  : 2.0 * distance * std::tan(0.5 * camera_.verticalFov);
     const glm::dvec3 right = glm::normalize(glm::cross(camera_.direction, camera_.up));
     const glm::dvec2 moved = seen / std::max(height, 1) * input.mouseDelta;
     camera_.position += moved.y * glm::cross(right, camera_.direction) - moved.x * right;
-  } else if (holds(input, MouseButton::left) && input.mouseDelta != glm::dvec2(0.0)) {
+  } else if (input.holds(MouseButton::left) && input.mouseDelta != glm::dvec2(0.0)) {
     const glm::dvec3 pivot = camera_.position + distance * camera_.direction;
     turn(kOrbitPerPixel * input.mouseDelta);
     camera_.position = pivot - distance * camera_.direction;

@@ -365,11 +365,11 @@ void showStages(Ui& ui, WalkState& s) {
       "a cell long), the corners of cells that block light, or cache records: disks on their surfaces, in "
       "the colour of their irradiance.");
   if (s.glyphs == Glyphs::none) return;
+  ImGui::SliderInt("at most", &s.glyphMost, 10, 5000, "%d", ImGuiSliderFlags_Logarithmic);
+  ui.note("at most");
   if (s.glyphs == Glyphs::boxes) {
     ImGui::SliderInt("level", &s.glyphLevel, 0, BVH_MAX_DEPTH - 1);
     ui.note("level");
-    ImGui::SliderInt("at most", &s.glyphMost, 10, 5000, "%d", ImGuiSliderFlags_Logarithmic);
-    ui.note("at most");
     return;
   }
   const RenderSettings& settings = side.renderer->settings();
@@ -380,8 +380,6 @@ void showStages(Ui& ui, WalkState& s) {
   s.glyphCascade = std::clamp(s.glyphCascade, 0, last);
   ImGui::SliderInt("cascade", &s.glyphCascade, 0, last);
   ui.note("cascade");
-  ImGui::SliderInt("at most", &s.glyphMost, 10, 5000, "%d", ImGuiSliderFlags_Logarithmic);
-  ui.note("at most");
   if (s.glyphs == Glyphs::records && !cacheOf(side.renderer->technique()))
     wrapped("Available only for technique irradiance-cache.");
   else if ((s.glyphs == Glyphs::lobes || s.glyphs == Glyphs::geometry) && !volumeOf(side.renderer->technique()))

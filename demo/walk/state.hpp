@@ -168,6 +168,7 @@ struct WalkState {
     messageAge = 0.0;
   }
   SideState& side() { return sides[static_cast<std::size_t>(shown)]; }
+  const SideState& side() const { return sides[static_cast<std::size_t>(shown)]; }
   /// Whether a side is on the screen.
   bool isVisible(int side) const { return layout != Layout::one || side == shown; }
 };

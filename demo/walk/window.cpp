@@ -128,21 +128,20 @@ bool WalkWindow::takeStep() {
 
 /// What the mouse does in the picture, and the keys that move.
 void WalkWindow::steer(bool pointing) {
-  const auto holds = [&](MouseButton button) { return input_.buttons[static_cast<std::size_t>(button)]; };
-  const bool left = holds(MouseButton::left);
+  const bool left = input_.holds(MouseButton::left);
   if (input_.move != glm::dvec3(0.0)) {
     walking_.move = input_.move;
     walking_.fast = input_.fast;
     state_.path.follows = false;
   }
-  if (!left && !holds(MouseButton::middle)) orbitDistance_.reset();
+  if (!left && !input_.holds(MouseButton::middle)) orbitDistance_.reset();
   if (pointing) {
     leftBefore_ = left;
     cursorBefore_ = input_.cursor;
     return;
   }
   const glm::vec2 pixels(glm::max(view_, glm::ivec2(1)));
-  if (holds(MouseButton::right) && state_.layout == Layout::wipe)
+  if (input_.holds(MouseButton::right) && state_.layout == Layout::wipe)
     state_.split = std::clamp(static_cast<float>(input_.cursor.x) / pixels.x, 0.0f, 1.0f);
   if (overlay_.drags(glm::vec2(input_.cursor), left)) {
     changed();
@@ -162,7 +161,7 @@ void WalkWindow::steer(bool pointing) {
   if (!state_.orbits) {
     if (input_.wheel.y != 0.0)
       state_.zoom = std::clamp(state_.zoom * static_cast<float>(std::exp2(0.25 * input_.wheel.y)), 1.0f, 64.0f);
-    if (holds(MouseButton::middle))
+    if (input_.holds(MouseButton::middle))
       state_.centre = glm::clamp(
           state_.centre - glm::vec2(1.0f, -1.0f) * glm::vec2(input_.cursor - cursorBefore_) / pixels / state_.zoom,
           0.0f, 1.0f);
@@ -178,7 +177,7 @@ double WalkWindow::distanceOfCentre() const {
   const double radius = 0.5 * std::max(glm::length(state_.scene->bounds.extent()), 1e-9);
   const double toCentre = glm::dot(state_.scene->bounds.centre() - camera.position, camera.direction);
   const double usual = toCentre > 1e-3 * radius ? toCentre : radius;
-  const SideState& side = state_.sides[static_cast<std::size_t>(state_.shown)];
+  const SideState& side = state_.side();
   if (!side.renderer || !side.renderer->depth()) return usual;
   const gl::Texture& depth = *side.renderer->depth();
   const gl::Texture one("pixel", depth.format(), glm::ivec2(1));
@@ -277,8 +276,7 @@ void WalkWindow::stepThrough(std::vector<Edit>& from, std::vector<Edit>& to) {
 
 /// Finds what has been edited since, once it is done: a drag is one edit. Curves move lights of their own.
 void WalkWindow::noteEdits() {
-  if (input_.buttons != std::array<bool, 3>{} || !state_.sides[0].failedAs.empty() || !state_.sides[1].failedAs.empty())
-    return;
+  if (input_.holdsAnyButton() || !state_.sides[0].failedAs.empty() || !state_.sides[1].failedAs.empty()) return;
   Edit now{{state_.sides[0].options, state_.sides[1].options}, lightsOf(state_)};
   if (state_.scene->motion) now.lights = lastEdit_.lights;
   const bool same = textOf(now.options[0]) == textOf(lastEdit_.options[0]) &&
@@ -311,7 +309,7 @@ void WalkWindow::moveScene(double seconds) {
 bool WalkWindow::relight() {
   const LightState now = lightsOf(state_);
   const SceneChange change = changeOf(shownLights_, now);
-  const bool held = input_.buttons[static_cast<std::size_t>(MouseButton::left)];
+  const bool held = input_.holds(MouseButton::left);
   if (!change.any() || (held && followSeconds_ > kSmoothSeconds)) return false;
   shownLights_ = now;
   follow(change);
@@ -321,12 +319,14 @@ bool WalkWindow::relight() {
 /// The scene has changed: renderers follow it, or are made anew where they cannot.
 void WalkWindow::follow(const SceneChange& change) {
   if (!change.any()) return;
-  const std::string before = fmt::format(" {}", state_.sceneVersion), now = fmt::format(" {}", ++state_.sceneVersion);
-  for (SideState& side : state_.sides) {
+  const std::array<bool, 2> isUpToDate{state_.sides[0].builtAs == wantedOf(state_.sides[0]),
+                                       state_.sides[1].builtAs == wantedOf(state_.sides[1])};
+  ++state_.sceneVersion;
+  for (std::size_t i = 0; i < 2; ++i) {
+    SideState& side = state_.sides[i];
     side.judgement.clear();
-    const bool isUpToDate = side.builtAs == textOf(side.options) + before;
-    if (side.renderer && isUpToDate && side.renderer->follow(context_, programs_, *state_.scene, change))
-      side.builtAs = textOf(side.options) + now;
+    if (side.renderer && isUpToDate[i] && side.renderer->follow(context_, programs_, *state_.scene, change))
+      side.builtAs = wantedOf(side);
     side.settled = false;
   }
   changed();
@@ -393,7 +393,7 @@ void WalkWindow::loadWantedScene() {
     SideState& a = state_.sides[0];
     a.renderer = std::move(renderer);
     a.built = a.options;
-    a.builtAs = textOf(a.options) + fmt::format(" {}", state_.sceneVersion);
+    a.builtAs = wantedOf(a);
     state_.sceneText = file.string();
     if (host_.kind() == HostKind::window && !player_) rememberFile(file);
     state_.path.spline = std::move(path);
@@ -412,6 +412,10 @@ void WalkWindow::loadWantedScene() {
   }
 }
 
+std::string WalkWindow::wantedOf(const SideState& side) const {
+  return textOf(side.options) + fmt::format(" {}", state_.sceneVersion);
+}
+
 void WalkWindow::make(SideState& side) {
   if (side.shows == Shows::picture) {
     if (side.pictureFile != side.pictureShown) {
@@ -424,7 +428,7 @@ void WalkWindow::make(SideState& side) {
     }
     if (side.picture) return;
   }
-  const std::string wanted = textOf(side.options) + fmt::format(" {}", state_.sceneVersion);
+  const std::string wanted = wantedOf(side);
   if (side.shows != Shows::technique && side.renderer) return;
   if (wanted == side.builtAs || wanted == side.failedAs) return;
   const bool first = !state_.sides[0].renderer;
@@ -461,10 +465,10 @@ void WalkWindow::make(SideState& side) {
     side.options = side.built;
     if (!side.renderer) side.failedAs = wanted;
     if (changeOf(lastEdit_.lights, lightsOf(state_)).any() && !state_.scene->motion) {
-      // It was for other lights: those of the renderer that stays.
+      // The renderer that stays is of the lights before; the other side's, if it is of these, is not.
       setLights(state_, lastEdit_.lights);
       shownLights_ = lastEdit_.lights;
-      side.builtAs = textOf(side.options) + fmt::format(" {}", state_.sceneVersion);
+      for (SideState& each : state_.sides) each.builtAs = &each == &side ? wantedOf(each) : "";
     }
     state_.say("stopped; settings and light as before");
   }
@@ -489,7 +493,7 @@ void WalkWindow::makeReady() {
 }
 
 bool WalkWindow::showsLpvStep() const {
-  const SideState& shown = state_.sides[static_cast<std::size_t>(state_.shown)];
+  const SideState& shown = state_.side();
   return state_.lpvSteps && state_.lpvStep >= 0 && shown.renderer && volumeOf(shown.renderer->technique());
 }
 

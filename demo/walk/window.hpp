@@ -47,6 +47,7 @@ class WalkWindow {
   void moveCamera(double seconds);
   void loadWantedScene();
   void makeReady();
+  std::string wantedOf(const SideState& side) const;  ///< of builtAs, were it up to date
   void make(SideState& side);
   void measureLpvSteps();
   bool showsLpvStep() const;

@@ -11,7 +11,7 @@ namespace lucerna {
 double percentile(std::span<const double> sample, double p);
 
 /// Bounds of the population's median: order statistics between which it lies with a probability of at least 95 %, for
-/// any distribution (the sign test). NaN for fewer than six values. Source: David and Nagaraja 2003, section 7.1.
+/// any distribution (the sign test). NaN for fewer than six values. Source: [DavidNagaraja2003, 7.1].
 struct MedianInterval {
   double low, high;
 };

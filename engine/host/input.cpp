@@ -125,7 +125,7 @@ HostInput InputState::take() {
     input = std::move(steps_.front().input);
     steps_.pop_front();
   }
-  const bool dragging = input.buttons != std::array<bool, 3>{};
+  const bool dragging = input.holdsAnyButton();
   if (dragging && dragged_) input.mouseDelta = input.cursor - lastCursor_;
   dragged_ = dragging;
   lastCursor_ = input.cursor;

@@ -45,7 +45,9 @@ struct HostInput {
   glm::dvec2 wheel{0.0};  ///< steps; +y away from the user
   std::vector<std::filesystem::path> dropped;  ///< files dropped onto the window
   bool focused = true;
-  bool exposed = false;  ///< the window's content was lost
+
+  bool holds(MouseButton button) const { return buttons[static_cast<std::size_t>(button)]; }
+  bool holdsAnyButton() const { return buttons != std::array<bool, 3>{}; }
 
   // The same, prepared for first-person movement.
   glm::dvec2 mouseDelta{0.0};  ///< pixels, while a button is held; +y down
@@ -65,7 +67,7 @@ class InputState {
   void button(MouseButton button, bool down);
   void wheel(const glm::dvec2& steps) { open().wheel += steps; }
   void drop(const std::filesystem::path& file) { open().dropped.push_back(file); }
-  void expose() { open().exposed = true; }
+  void expose() { open(); }  ///< the window's content was lost: a step in which nothing is done
   void close() { open().closeRequested = true; }
   /// Releases all keys and buttons if the window loses focus, because no release events arrive then.
   void focus(bool focused);

@@ -648,6 +648,14 @@ Box decoded(const BvhNode& node, std::size_t k) {
 
 }  // namespace
 
+Bounds boundsOfChild(const BvhNode& node, std::size_t child) {
+  const Box box = decoded(node, child);
+  Bounds bounds;
+  bounds.add(glm::dvec3(box.min[0], box.min[1], box.min[2]));
+  bounds.add(glm::dvec3(box.max[0], box.max[1], box.max[2]));
+  return bounds;
+}
+
 BvhRefit::BvhRefit(const Bvh& bvh, const Scene& scene) : index_(std::make_unique<Index>()) {
   Index& index = *index_;
   index.firstPlace.assign(scene.triangleCount() + 1, 0u);

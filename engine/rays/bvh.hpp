@@ -48,6 +48,9 @@ struct Bvh {
 /// For any scene, even an empty one.
 Bvh buildBvh(const Scene& scene, const BvhSettings& settings = {});
 
+/// The box of a node's child that exists, in the hierarchy's space.
+Bounds boundsOfChild(const shared::BvhNode& node, std::size_t child);
+
 /// Fits a hierarchy to meshes that have moved, for the price of those.
 class BvhRefit {
  public:

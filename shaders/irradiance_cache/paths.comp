@@ -260,7 +260,7 @@ vec3 followPath(Surface surface, uint triangle, PathNumbers numbers) {
     if (isShadow) {
       if (traversal.hit.triangle == kNoHit) radiance += shadow.light;
       shadow.waits = false;
-      if (ends && !shadow.waits && !lampRay.waits) break;
+      if (ends && !lampRay.waits) break;
       continue;
     }
     Hit hit = finishRay(traversal, traced.direction);

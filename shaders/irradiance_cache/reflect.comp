@@ -3,7 +3,7 @@
 // surface. That one shows its emission, the lamps that reach it and the irradiance of the records around it, as if
 // matte. Where there are none, paths go on. Beyond all surfaces is the environment.
 // Rough coats reflect the pixel's own irradiance, as if light came from all sides alike: their lobe is as wide.
-// Media are a preview (body.glsl). Alpha is the share of the pixel's surface that clouds before it let through.
+// Media are a preview (body.glsl). Alpha: of a rough coat's lobe, for smooth.comp; -1 where a cloud hides the surface.
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "shared/bindings.h"
 #include "shared/path_tracer.h"

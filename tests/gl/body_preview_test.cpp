@@ -43,11 +43,6 @@ class BodyPreview : public PathTest {
   Image traced(const Scene& scene, const Camera& camera, std::uint32_t samples) {
     return tracer(scene, camera, sized(32), samples).mean();
   }
-  static glm::dvec3 mean(const Image& image) {
-    glm::dvec3 sum(0.0);
-    for (const glm::vec3& p : image.pixels) sum += glm::dvec3(p);
-    return sum / static_cast<double>(image.pixels.size());
-  }
   /// A ball of radius 1 with a medium inside, in an environment of radiance 1.
   static Scene ballOf(const Medium& medium, double ior) {
     Scene scene;
@@ -73,7 +68,7 @@ TEST_F(BodyPreview, AnAbsorberHasItsColour) {
   const Image image = drawn(ballOf(medium(glm::vec3(0.0f), absorption), 1.5), atBall(0.02));
   for (int c = 0; c < 3; ++c) {
     const double expected = 0.04 + 0.96 * std::exp(-2.0 * double(absorption[c]));
-    EXPECT_NEAR(mean(image)[c], expected, 0.005) << c;
+    EXPECT_NEAR(meanOf(image)[c], expected, 0.005) << c;
   }
 }
 
@@ -86,14 +81,14 @@ TEST_F(BodyPreview, ADenseWhiteBodyIsInvisibleInAFurnace) {
 // Within a fifth: light inside is taken as diffuse, but refraction has turned it inwards, where more is absorbed.
 TEST_F(BodyPreview, ADenseBodyIsAboutAsBrightAsByPathTracing) {
   const Scene scene = ballOf(medium({40.0f, 30.0f, 20.0f}, {0.4f, 3.0f, 10.0f}), 1.4);
-  const glm::dvec3 seen = mean(drawn(scene, atBall(0.2))), expected = mean(traced(scene, atBall(0.2), 64));
+  const glm::dvec3 seen = meanOf(drawn(scene, atBall(0.2))), expected = meanOf(traced(scene, atBall(0.2), 64));
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(seen[c], expected[c], 0.2 * expected[c]) << c;
 }
 
 // Within a boundary that does not refract light walks at random.
 TEST_F(BodyPreview, AMatchedCloudIsAsBrightAsByPathTracing) {
   const Scene scene = ballOf(medium({1.5f, 1.0f, 0.5f}, {0.05f, 0.3f, 0.6f}), 1.0);
-  const glm::dvec3 seen = mean(drawn(scene, atBall(0.3))), expected = mean(traced(scene, atBall(0.3), 64));
+  const glm::dvec3 seen = meanOf(drawn(scene, atBall(0.3))), expected = meanOf(traced(scene, atBall(0.3), 64));
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(seen[c], expected[c], 0.02) << c;
 }
 
@@ -115,13 +110,13 @@ Scene cloudBeforeAWall(const Medium& medium) {
 TEST_F(BodyPreview, ACloudOnAGridDimsWhatIsBehindByItsDepth) {
   const Scene scene = cloudBeforeAWall(medium(glm::vec3(0.0f), glm::vec3(1.2f)));
   // Each sample passes or does not: 16 of 1,024 pixels, a standard error of 1.1 %.
-  EXPECT_NEAR(mean(drawn(scene, atBall(0.1))).y * kPi, std::exp(-1.2), 0.04 * std::exp(-1.2));
+  EXPECT_NEAR(meanOf(drawn(scene, atBall(0.1))).y * kPi, std::exp(-1.2), 0.04 * std::exp(-1.2));
 }
 
 // Lamps that shine are sampled, so a cloud is no noise of rays that find one.
 TEST_F(BodyPreview, ACloudOnAGridScattersLikeByPathTracing) {
   const Scene scene = cloudBeforeAWall(medium(glm::vec3(1.5f), glm::vec3(0.1f)));
-  const glm::dvec3 seen = mean(drawn(scene, atBall(0.25))), expected = mean(traced(scene, atBall(0.25), 64));
+  const glm::dvec3 seen = meanOf(drawn(scene, atBall(0.25))), expected = meanOf(traced(scene, atBall(0.25), 64));
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(seen[c], expected[c], 0.03 * expected[c]) << c;
 }
 
@@ -142,8 +137,8 @@ TEST_F(BodyPreview, EverySceneOfMediaShowsThem) {
     double change = 0.0;
     for (std::size_t i = 0; i < a.pixels.size(); ++i)
       change += static_cast<double>(std::abs(a.pixels[i].y - b.pixels[i].y)) / static_cast<double>(a.pixels.size());
-    EXPECT_GT(mean(a).y, 0.01) << entry.path();
-    EXPECT_GT(change, 0.02 * mean(a).y) << entry.path();
+    EXPECT_GT(meanOf(a).y, 0.01) << entry.path();
+    EXPECT_GT(change, 0.02 * meanOf(a).y) << entry.path();
     ++scenes;
   }
   EXPECT_GE(scenes, 15);

@@ -272,6 +272,14 @@ struct FloorAndWall {
       }
     return sum * 4.0 / (kSteps * kSteps);
   }
+  /// Radiance of the floor under a spot at (1, height, 0) of intensity 9 that points downwards.
+  static std::function<double(double, double)> underSpot(double height, double inner, double outer) {
+    return [=](double x, double z) {
+      const double d2 = (x - 1.0) * (x - 1.0) + height * height + z * z, cosine = height / std::sqrt(d2);
+      const double t = std::clamp((cosine - std::cos(outer)) / (std::cos(inner) - std::cos(outer)), 0.0, 1.0);
+      return 0.8 / kPi * 9.0 * t * t * (3.0 - 2.0 * t) * cosine / d2;
+    };
+  }
   /// Irradiance of a point of the wall from a floor of `radiance(x, z)`.
   static double irradiance(const glm::dvec3& p, const std::function<double(double, double)>& radiance) {
     return integral(
@@ -336,11 +344,7 @@ TEST_F(IrradianceCacheGl, AWallBesideAFloorUnderALamp) {
   }
   FloorAndWall room;
   room.builder.scene().spots.push_back({{1.0, 2.0, 0.0}, {0.0, -1.0, 0.0}, glm::vec3(9.0f), 0.2, 0.4});
-  const auto radiance = [](double x, double z) {
-    const double d2 = (x - 1.0) * (x - 1.0) + 4.0 + z * z, cosine = 2.0 / std::sqrt(d2);
-    const double t = std::clamp((cosine - std::cos(0.4)) / (std::cos(0.2) - std::cos(0.4)), 0.0, 1.0);
-    return 0.8 / kPi * 9.0 * t * t * (3.0 - 2.0 * t) * cosine / d2;
-  };
+  const auto radiance = FloorAndWall::underSpot(2.0, 0.2, 0.4);
   const Picture seen =
       picture(room.builder.scene(), room.camera, FloorAndWall::fine(settings(1, 1024, Component::indirect)));
   room.expect(
@@ -365,11 +369,7 @@ TEST_F(IrradianceCacheGl, AWallBesideAFloorCloseToALamp) {
   }
   FloorAndWall room;
   room.builder.scene().spots.push_back({{1.0, 0.2, 0.0}, {0.0, -1.0, 0.0}, glm::vec3(9.0f), 0.3, 0.9});
-  const auto radiance = [](double x, double z) {
-    const double d2 = (x - 1.0) * (x - 1.0) + 0.04 + z * z, cosine = 0.2 / std::sqrt(d2);
-    const double t = std::clamp((cosine - std::cos(0.9)) / (std::cos(0.3) - std::cos(0.9)), 0.0, 1.0);
-    return 0.8 / kPi * 9.0 * t * t * (3.0 - 2.0 * t) * cosine / d2;
-  };
+  const auto radiance = FloorAndWall::underSpot(0.2, 0.3, 0.9);
   const Picture seen =
       picture(room.builder.scene(), room.camera, FloorAndWall::fine(settings(1, 1024, Component::indirect)));
   room.expect(

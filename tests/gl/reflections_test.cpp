@@ -38,11 +38,6 @@ class ReflectionsTest : public PathTest {
     s.filter = PixelFilter::centre;
     return tracer(scene, camera, s, samples).mean();
   }
-  static glm::dvec3 mean(const Image& image) {
-    glm::dvec3 sum(0.0);
-    for (const glm::vec3& p : image.pixels) sum += glm::dvec3(p);
-    return sum / static_cast<double>(image.pixels.size());
-  }
   /// A floor of one material under a sky of one radiance.
   static SceneBuilder floorUnderSky(const Material& material, float radiance) {
     SceneBuilder builder;
@@ -82,7 +77,7 @@ TEST_F(ReflectionsTest, CoatsReflectAnEvenSkyByTheirAlbedo) {
       RenderSettings s = settings();
       s.of<IrradianceCacheSettings>().reflections = 64;
       const glm::dvec3 seen =
-          mean(drawn(floorUnderSky(coated(glm::vec3(base), {0.04f, 0.3f, 0.9f}, alpha), 1.0f).scene(), camera, s));
+          meanOf(drawn(floorUnderSky(coated(glm::vec3(base), {0.04f, 0.3f, 0.9f}, alpha), 1.0f).scene(), camera, s));
       const reference::CoatedSurface surface(glm::dvec3(base), {0.04, 0.3, 0.9}, static_cast<double>(alpha));
       const glm::dvec3 coat = surface.albedo(std::cos(angle));
       for (int c = 0; c < 3; ++c) {
@@ -99,7 +94,7 @@ TEST_F(ReflectionsTest, GlassIsClear) {
   scene.environment.emplace().radiance = glm::vec3(3.0f);
   const Image image = drawn(scene, lookingAt({0, 0, 6}, {0, 0, 0}, 0.25));
   EXPECT_NEAR(image.at(16, 16).y, 3.0f, 1e-3f);
-  EXPECT_NEAR(mean(image).y, 3.0, 0.02);  // at the rim some rays are caught inside
+  EXPECT_NEAR(meanOf(image).y, 3.0, 0.02);  // at the rim some rays are caught inside
 }
 
 // A small bright lamp beside a rough floor: a ray in twenty meets it. Neighbours share what they find, which moves no
@@ -126,9 +121,9 @@ TEST_F(ReflectionsTest, RoughCoatsHaveNoSpecks) {
     if (many.pixels[i].y == 0.0f) { EXPECT_EQ(few.pixels[i].y, 0.0f); }
   }
   std::cout << "[ measured ] rough coat, 16 rays beside 1024: " << std::sqrt(squares / all) << ", mean "
-            << mean(few).y / mean(many).y << "\n";
+            << meanOf(few).y / meanOf(many).y << "\n";
   EXPECT_LT(std::sqrt(squares / all), 0.25);
-  EXPECT_NEAR(mean(few).y / mean(many).y, 1.0, 0.03);
+  EXPECT_NEAR(meanOf(few).y / meanOf(many).y, 1.0, 0.03);
 }
 
 /// The open box with a back wall that reflects.
@@ -154,7 +149,7 @@ TEST_F(ReflectionsTest, AWallShowsTheBoxAsThePathTracerDoes) {
       all += glm::dot(glm::dvec3(expected.pixels[i]), glm::dvec3(expected.pixels[i]));
     }
     EXPECT_LT(std::sqrt(squares / all), 0.15) << alpha;
-    const double ratio = mean(image).y / mean(expected).y;
+    const double ratio = meanOf(image).y / meanOf(expected).y;
     EXPECT_NEAR(ratio, 1.0, 0.04) << alpha;
   }
 }
@@ -186,7 +181,7 @@ TEST_F(ReflectionsTest, AllIsDirectPlusIndirect) {
     RenderSettings s = settings();
     s.component = component;
     s.of<IrradianceCacheSettings>().samples = 2048;
-    parts[static_cast<int>(component)] = mean(drawn(scene, openBoxCamera(), s));
+    parts[static_cast<int>(component)] = meanOf(drawn(scene, openBoxCamera(), s));
   }
   const glm::dvec3 all = parts[static_cast<int>(Component::all)],
                    sum = parts[static_cast<int>(Component::direct)] + parts[static_cast<int>(Component::indirect)];
