@@ -81,7 +81,8 @@ Scene needle(double width, double height) {
 }
 
 void addNeedles(std::vector<StabilityCase>& cases) {
-  for (const auto& [width, height] : {std::array{1e-3, 0.2}, std::array{1e-4, 0.6}, std::array{1e-6, 0.2}}) {
+  for (const glm::dvec2& size : {glm::dvec2(1e-3, 0.2), glm::dvec2(1e-4, 0.6), glm::dvec2(1e-6, 0.2)}) {
+    const double width = size.x, height = size.y;
     const double expected = 0.5 * toRectangle(1.0, 0.5 * width, height) / width;
     const std::string parameter = fmt::format("2 x {:g}, {:g} above", width, height);
     cases.push_back({"path", "a lamp as narrow as a needle over a floor", parameter, [=](const StabilityContext& c) {

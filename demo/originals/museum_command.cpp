@@ -10,8 +10,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <ranges>
 #include <span>
+#include <string_view>
+#include <vector>
 
 namespace lucerna::demo {
 
@@ -32,9 +33,11 @@ int museum(const MuseumOptions& options) {
   if (!options.room.empty()) {
     const auto isIt = [&](const Room& room) { return options.room == room.deviation; };
     const auto found = std::find_if(rooms.begin(), rooms.end(), isIt);
-    if (found == rooms.end())
-      throwBadInput("--room {}: expected a deviation, one of {}", options.room,
-                    fmt::join(rooms | std::views::transform(&Room::deviation), ", "));
+    if (found == rooms.end()) {
+      std::vector<std::string_view> names;
+      for (const Room& room : rooms) names.push_back(room.deviation);
+      throwBadInput("--room {}: expected a deviation, one of {}", options.room, fmt::join(names, ", "));
+    }
     rooms = {found, 1};
   }
   const auto host = options.common.makeHost(false);

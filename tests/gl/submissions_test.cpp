@@ -178,7 +178,8 @@ double iterationsOfWalk(int depth, int top, int layers, const std::function<bool
 
 TEST_F(Submissions, NoLaneGathersForLongerThanIsSaid) {
   double longest = 0.0;
-  for (const auto& [depth, layers] : {std::pair(8, 1), {8, 6}, {12, 6}, {13, 1}}) {
+  for (const glm::ivec2& tree : {glm::ivec2(8, 1), glm::ivec2(8, 6), glm::ivec2(12, 6), glm::ivec2(13, 1)}) {
+    const int depth = tree.x, layers = tree.y;
     const int top = std::min(depth - 1, LightTree::kTop);
     // Without the texels near by, the way to a leaf and the ray.
     const double most =

@@ -71,9 +71,9 @@ std::optional<Seen> seenAt(const Scene& scene, int x, int y) {
     const glm::dvec3 w = glm::dvec3(area(b, c), area(c, a), area(a, b)) / whole;
     if (!(std::abs(whole) > 1e-9) || std::min({w.x, w.y, w.z}) < 0.0) continue;
     Seen here{};
-    for (int k = 0; k < 3; ++k) {
-      here.position += w[k] * glm::dvec3(v[k].position);
-      here.normal += w[k] * glm::dvec3(v[k].normal);
+    for (std::size_t k = 0; k < 3; ++k) {
+      here.position += w[static_cast<int>(k)] * glm::dvec3(v[k].position);
+      here.normal += w[static_cast<int>(k)] * glm::dvec3(v[k].normal);
     }
     if (here.position.z > camera.position.z || (seen && seen->position.z > here.position.z)) continue;
     seen = Seen{here.position, glm::normalize(here.normal)};

@@ -68,7 +68,8 @@ class Gltf {
     return add("accessors", a);
   }
   int floats(std::initializer_list<float> values, const char* shape) {
-    const std::size_t width = std::string(shape) == "SCALAR" ? 1 : std::string(shape) == "MAT4" ? 16 : shape[3] - '0';
+    const std::string_view kind = shape;
+    const std::size_t width = kind == "SCALAR" ? 1U : kind == "MAT4" ? 16U : static_cast<std::size_t>(kind[3] - '0');
     return accessor(view(bytesOf(values)), kFloat, shape, values.size() / width);
   }
   int add(const char* array, const Json& member) {

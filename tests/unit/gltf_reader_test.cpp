@@ -474,7 +474,7 @@ TEST(GltfReader, FilesThatGrowBeyondMeasureAreRefused) {
   gltf.attributes()["POSITION"] = zeros;
   for (int i = 0; i < 8; ++i) gltf.root["scenes"][0]["nodes"].push_back(gltf.add("nodes", {{"mesh", 0}}));
   EXPECT_TRUE(contains(gltf.refusal(), "at most 256 a byte are supported"));
-  gltf.root["accessors"][zeros]["count"] = std::uint64_t{1} << 40;
+  gltf.root["accessors"][static_cast<std::size_t>(zeros)]["count"] = std::uint64_t{1} << 40;
   EXPECT_TRUE(contains(gltf.refusal(), "elements without a buffer view"));
 }
 

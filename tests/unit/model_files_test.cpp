@@ -398,7 +398,8 @@ TEST(PlyFile, WhatIsWrongIsNamed) {
                 "float z\nend_header\n",
          "ends within element vertex"},
         {"ply\nformat binary_middle_endian 1.0\nend_header\n", "binary_middle_endian"}}) {
-    const std::string message = badInputMessage([&] { loadScene(folder.write("m.ply", content)); });
+    const std::filesystem::path file = folder.write("m.ply", content);
+    const std::string message = badInputMessage([&] { loadScene(file); });
     EXPECT_TRUE(contains(message, said)) << content << message;
     EXPECT_TRUE(contains(message, "m.ply")) << message;
   }
