@@ -3,7 +3,7 @@
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "base/json.hpp"
-#include "shared/provenance.hpp"
+#include "base/provenance.hpp"
 #include "shared/commands.hpp"
 #include "merge.hpp"
 #include "shared/parts.hpp"
@@ -302,7 +302,7 @@ int runCluster(const ClusterOptions& options) {
   struct Worker {
     pid_t process = 0;
     std::uint32_t task = 0;
-    bool isAskedToStop = false;
+    bool isStopRequested = false;
   };
   std::vector<Worker> workers(static_cast<std::size_t>(options.jobs));
   std::size_t next = 0;
@@ -324,8 +324,8 @@ int runCluster(const ClusterOptions& options) {
         ++next;
       }
       // Once: a second signal would end it without keeping its work.
-      if (worker.process != 0 && interrupted() && !worker.isAskedToStop)
-        worker.isAskedToStop = ::kill(worker.process, SIGTERM) == 0;
+      if (worker.process != 0 && interrupted() && !worker.isStopRequested)
+        worker.isStopRequested = ::kill(worker.process, SIGTERM) == 0;
       busy = busy || worker.process != 0;
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(20));

@@ -4,7 +4,7 @@
 #include "shared/contact_sheet.hpp"
 #include "shared/figure.hpp"
 #include "shared/html.hpp"
-#include "shared/provenance.hpp"
+#include "base/provenance.hpp"
 #include "shared/commands.hpp"
 #include "measure/flip.hpp"
 #include "measure/heat_map.hpp"
@@ -59,8 +59,8 @@ void writePage(const CompareOptions& options, const Image& image, const Image& r
   std::vector<std::string> words{"lucerna", "compare", options.image, options.reference};
   if (error) words.insert(words.end(), {"--standard-error", options.standardError});
   figure.facts = {{"title", options.image + " against " + options.reference},
-                  {"program", bench::programVersion()},
-                  {"cpu", bench::cpuName()},
+                  {"program", programVersion()},
+                  {"cpu", cpuName()},
                   {"command", bench::shellCommand(words)},
                   {"exposure", 1.0},
                   {"relmse_epsilon", measure::kRelativeEpsilon},

@@ -2,6 +2,8 @@
 
 #include "base/error.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include <cstdio>
 
 namespace lucerna::demo {

@@ -3,7 +3,7 @@
 
 #include "frame/pixel_inspection.hpp"
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include <string>
 

@@ -1,7 +1,7 @@
 // The settings and deviations as documents: docs/settings.md, and the same as JSON. Both are generated from the tables.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include <string>
 

@@ -200,7 +200,7 @@ function medianError(values) {
   const deviation = Math.sqrt(values.reduce((a, b) => a + (b - mean) ** 2, 0) / (values.length - 1));
   return deviation * (values.length === 3 ? 0.67 : Math.sqrt(1.5708 / values.length));
 }
-const costSpread = (row, cost) => medianError(cost === 'cpu_ms' ? (row.seeds || {}).cpu_ms : row.wall_ms_samples);
+const costError = (row, cost) => medianError(cost === 'cpu_ms' ? (row.seeds || {}).cpu_ms : row.wall_ms_samples);
 const isBelow = (a, ea, b, eb) => a < b && b - a > 2 * Math.hypot(ea, eb);
 /// The front by a test, as engine/measure/front.hpp has it: settings of a technique must be on the front inside their
 /// model first.
@@ -209,7 +209,7 @@ function frontOf(rows, cost, metric) {
     index,
     cost: COSTS[cost].of(row),
     error: ranked(row, metric),
-    costSpread: costSpread(row, cost),
+    costError: costError(row, cost),
     spread: spreadOf(row, metric),
   });
   const points = rows.map(pointOf)
@@ -218,7 +218,7 @@ function frontOf(rows, cost, metric) {
   const kept = [];
   for (const p of points) if (kept.every(q => isBelow(p.error, p.spread, q.error, q.spread))) kept.push(p);
   const isBeaten = p => kept.some(q => isBelow(q.error, q.spread, p.error, p.spread) &&
-    !isBelow(p.cost, p.costSpread, q.cost, q.costSpread));
+    !isBelow(p.cost, p.costError, q.cost, q.costError));
   return kept.filter(p => !isBeaten(p)).map(p => p.index);
 }
 /// Error of a series at a cost: log-log between the points around it. {value, spread, interpolated}, or null outside
@@ -241,12 +241,12 @@ function costAt(points, error) {
   for (let i = 0; i < points.length; ++i) {
     const b = points[i], a = points[i - 1];
     if (b.error > error) continue;
-    if (!a) return {value: b.cost, spread: b.costSpread, interpolated: false, atMost: b.error < error};
+    if (!a) return {value: b.cost, spread: b.costError, interpolated: false, atMost: b.error < error};
     const slope = Math.log(b.cost / a.cost) / Math.log(b.error / a.error);
     const f = Math.log(error / a.error) / Math.log(b.error / a.error);
     const value = a.cost * (b.cost / a.cost) ** f;
     const ofError = Math.abs(slope) * Math.hypot((1 - f) * a.spread / a.error, f * b.spread / b.error);
-    const spread = value * Math.hypot(ofError, (1 - f) * a.costSpread / a.cost, f * b.costSpread / b.cost);
+    const spread = value * Math.hypot(ofError, (1 - f) * a.costError / a.cost, f * b.costError / b.cost);
     return {value, spread, interpolated: f < 1 - 1e-9, atMost: false};
   }
   return null;
@@ -998,7 +998,7 @@ class Figure {
       cost: COSTS[cost].of(row),
       error: ranked(row, metric),
       spread: spreadOf(row, metric),
-      costSpread: costSpread(row, cost),
+      costError: costError(row, cost),
       noise: atNoise(row, metric),
     });
     return this.rows.map(pointOf)

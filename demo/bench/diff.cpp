@@ -43,7 +43,7 @@ struct DiffOptions {
   CommonOptions common;
   std::string a, b;
   std::vector<std::string> what{"error", "time"};
-  double significance = 0.01, timeFloor = 0.1;
+  double significance = 0.01, timeMargin = 0.1;
 };
 
 /// Equal up to rounding: atomics add in any order.
@@ -157,9 +157,9 @@ TimeRatios timeRatios(const std::vector<std::pair<ErrorRow, ErrorRow>>& rows, co
   return result;
 }
 
-/// floor: changes below this fraction are undecided.
+/// margin: changes below this fraction are undecided.
 Finding judgeTime(const ErrorRow& a, const ErrorRow& b, const char* key, const TimeRatios& all, double z,
-                  double floor) {
+                  double margin) {
   Finding finding{key, number(a, key), number(b, key), NAN, Verdict::undecided};
   const Estimate timeA = logTimeOf(a, key), timeB = logTimeOf(b, key);
   const double change = timeB.value - timeA.value - all.shift,
@@ -167,7 +167,7 @@ Finding judgeTime(const ErrorRow& a, const ErrorRow& b, const char* key, const T
   if (!std::isfinite(change) || !std::isfinite(error)) return finding;
   finding.apart = error > 0.0 ? change / error : change == 0.0 ? 0.0 : std::copysign(INFINITY, change);
   if (std::abs(finding.apart) > studentLimit(z, static_cast<double>(all.count) - 1.0) &&
-      std::abs(change) > std::log1p(floor))
+      std::abs(change) > std::log1p(margin))
     finding.verdict = change > 0.0 ? Verdict::worse : Verdict::better;
   return finding;
 }
@@ -248,9 +248,9 @@ int runDiff(const DiffOptions& options) {
       diff.findings.push_back(judge("bias", biasOf(rowA, INFINITY), biasOf(rowB, INFINITY), z));
     }
     if (wants("time")) {
-      Finding time = judgeTime(rowA, rowB, "ms", times, z, options.timeFloor);
+      Finding time = judgeTime(rowA, rowB, "ms", times, z, options.timeMargin);
       if (byProcessor && std::isfinite(number(rowA, "cpu_ms")) && std::isfinite(number(rowB, "cpu_ms")) &&
-          judgeTime(rowA, rowB, "cpu_ms", processorTimes, z, options.timeFloor).verdict != time.verdict)
+          judgeTime(rowA, rowB, "cpu_ms", processorTimes, z, options.timeMargin).verdict != time.verdict)
         time.verdict = Verdict::undecided;
       diff.findings.push_back(time);
     }
@@ -328,7 +328,7 @@ Work addBenchDiff(Command app) {
   app.addOption("--significance", options->significance,
                 "probability that any row is called better or worse although nothing changed")
       .showDefault();
-  app.addOption("--time-floor", options->timeFloor, "smaller changes of a time, as a fraction, are undecided")
+  app.addOption("--time-margin", options->timeMargin, "smaller changes of a time, as a fraction, are undecided")
       .showDefault()
       .notNegative();
   options->common.declare(app);

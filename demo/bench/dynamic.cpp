@@ -60,7 +60,7 @@ struct Moment {
 };
 
 /// What is measured: a technique with a budget.
-struct Asked {
+struct Requested {
   std::string name;  ///< such as "irradiance-cache samples=64"
   RenderSettings settings;
 };
@@ -227,7 +227,7 @@ class Moments {
 };
 
 Row draw(const DynamicOptions& options, const gl::Context& context, gl::ProgramLibrary& programs, Scene& scene,
-         const Asked& asked, const std::vector<Moment>& moments) {
+         const Requested& asked, const std::vector<Moment>& moments) {
   Row row{asked.name, {}, {}, {}};
   const RenderSettings& settings = asked.settings;
   poseAt(scene, moments.front().seconds);
@@ -335,7 +335,7 @@ int runDynamic(DynamicOptions options) {
     options.techniques = {"direct", "rsm", "lpv", "irradiance-cache"};
 
   // Techniques and budgets
-  std::vector<Asked> asked;
+  std::vector<Requested> asked;
   const auto ask = [&](const std::string& name, const PictureOptions& picture) {
     RenderSettings settings = picture.parse();
     settings.technique = techniqueNamed(picture.technique, "--techniques").name;
@@ -385,7 +385,7 @@ int runDynamic(DynamicOptions options) {
   };
   for (std::size_t k = 0; k < moments.size(); ++k) save("reference", k, moments[k].reference.mean);
   Progress progress("techniques", static_cast<int>(asked.size()), options.common.quiet);
-  for (const Asked& one : asked) {
+  for (const Requested& one : asked) {
     rows.push_back(draw(options, context, programs, scene, one, moments));
     if (interrupted()) return exitCode();
     for (std::size_t k = 0; k < moments.size(); ++k) save(rows.back().name, k, rows.back().pictures[k]);

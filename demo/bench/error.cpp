@@ -8,7 +8,7 @@
 #include "bench/bench.hpp"
 #include "bench/error_bench.hpp"
 #include "scene/motion.hpp"
-#include "shared/provenance.hpp"
+#include "base/provenance.hpp"
 #include "shared/completions.hpp"
 #include "shared/shell.hpp"
 

@@ -189,9 +189,9 @@ ErrorRow rowOf(const ErrorBench& bench, const PathSeries& series, std::uint32_t 
   return row;
 }
 
-/// Spread of a value between seeds, relative to its mean: pooled over points, as three seeds alone are a poor estimate.
-/// NaN if no point has two seeds.
-double relativeSpread(const std::vector<ErrorRow>& rows, const char* measure, double& freedom) {
+/// Standard deviation of a value between seeds, relative to its mean: pooled over points, as three seeds alone are a
+/// poor estimate. NaN if no point has two seeds.
+double relativeDeviation(const std::vector<ErrorRow>& rows, const char* measure, double& freedom) {
   double squares = 0.0;
   freedom = 0.0;
   for (const ErrorRow& row : rows) {
@@ -210,16 +210,16 @@ double relativeSpread(const std::vector<ErrorRow>& rows, const char* measure, do
 }
 
 /// A sampled picture's errors differ from seed to seed: add that to their standard errors.
-void addSeedSpread(std::vector<ErrorRow>& rows) {
+void addSeedDeviation(std::vector<ErrorRow>& rows) {
   for (const char* measure : {"l2", "nrmse", "relmse"}) {
     double freedom = 0.0;
-    const double spread = relativeSpread(rows, measure, freedom);
-    if (!std::isfinite(spread)) continue;
+    const double deviation = relativeDeviation(rows, measure, freedom);
+    if (!std::isfinite(deviation)) continue;
     for (ErrorRow& row : rows) {
       const std::size_t n = row.contains("seeds") ? row.at("seeds").at("seed").size() : 1;
       const double ofMedian = n == 3 ? 0.67 : n > 1 ? std::sqrt(1.5708 / static_cast<double>(n)) : 1.0;
       const std::string key = std::string(measure) + "_error";
-      const double own = spread * ofMedian * number(row, measure), reference = number(row, key.c_str());
+      const double own = deviation * ofMedian * number(row, measure), reference = number(row, key.c_str());
       row[key] = std::isfinite(reference) ? std::hypot(reference, own) : own;
       row["error_freedom"] =
           std::max(1.0, 0.5 * freedom);  // a point includes the samples of those below it: half as many are independent
@@ -251,7 +251,7 @@ std::vector<ErrorRow> measurePath(const ErrorBench& bench, bool deviations) {
     writeFileAtomically(file, nlohmann::ordered_json(own).dump(1) + "\n");
     rows.insert(rows.end(), own.begin(), own.end());
   }
-  addSeedSpread(rows);
+  addSeedDeviation(rows);
   return rows;
 }
 

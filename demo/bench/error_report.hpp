@@ -3,7 +3,7 @@
 
 #include "bench/error_rows.hpp"
 #include "shared/html.hpp"
-#include "shared/provenance.hpp"
+#include "base/provenance.hpp"
 
 namespace lucerna::demo::bench {
 

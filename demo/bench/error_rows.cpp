@@ -10,7 +10,7 @@
 #include "irradiance_cache/irradiance_cache_frame.hpp"
 #include "irradiance_cache/settings.hpp"
 #include "lpv/settings.hpp"
-#include "shared/provenance.hpp"
+#include "base/provenance.hpp"
 #include "gl/draw.hpp"
 #include "measure/flip.hpp"
 #include "measure/front.hpp"

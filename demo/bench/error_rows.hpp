@@ -46,7 +46,7 @@ void claimFolder(const std::filesystem::path& folder, const std::string& identit
 std::optional<ErrorRow> finishedRow(const std::filesystem::path& folder, const SweepPoint& point);
 /// Renders, judges, writes picture and row. `more`: settings that the point's name does not include.
 ErrorRow measurePoint(const ErrorBench& bench, const SweepPoint& point, const std::vector<std::string>& more = {});
-/// A floor: the indirect light is measured alone, and the technique's own direct light is added.
+/// A lower bound: the indirect light is measured alone, and the technique's own direct light is added.
 ErrorRow measureBound(const ErrorBench& bench, const SweepPoint& point);
 /// A point by glReadPixels: the published program solves the scene, and its solution is displayed and judged.
 /// "setup_ms" includes the solving, "published" describes the solution. Of a scene with too many triangles a coarser

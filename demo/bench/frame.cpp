@@ -10,7 +10,7 @@
 #include "measure/heat_map.hpp"
 #include "pathtracer/path_sampler.hpp"
 #include "scene/scene_file.hpp"
-#include "shared/provenance.hpp"
+#include "base/provenance.hpp"
 #include "shared/shell.hpp"
 
 #include <fmt/format.h>

@@ -3,7 +3,7 @@
 
 #include "bench/frame_passes.hpp"
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include <cstdint>
 #include <optional>

@@ -2,7 +2,7 @@
 
 #include "base/error.hpp"
 #include "base/files.hpp"
-#include "shared/provenance.hpp"
+#include "base/provenance.hpp"
 #include "shared/shell.hpp"
 
 #include <algorithm>

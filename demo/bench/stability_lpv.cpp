@@ -44,7 +44,7 @@ class Volume {
     scale_ = setup.referenceIrradiance;
   }
 
-  /// The flux of the sum of all fronts: band 0 times sqrt(4 pi).
+  /// The flux of the sum of all wavefronts: band 0 times sqrt(4 pi).
   double flux() const {
     double sum = 0.0;
     for (const glm::vec4& c : lpv_.result()[0].readRgba()) sum += static_cast<double>(c.x);
@@ -119,8 +119,8 @@ double fluxOf(const StabilityContext& context, Setup setup, int iterations, cons
   return Volume(context, setup, vpls).flux();
 }
 
-/// The flux of front number n alone.
-double frontFlux(const StabilityContext& context, const Setup& setup, int n) {
+/// The flux of wavefront number n alone.
+double wavefrontFlux(const StabilityContext& context, const Setup& setup, int n) {
   const std::vector<Vpl> light{inTheMiddle(setup.cells)};
   return fluxOf(context, setup, n, light) - fluxOf(context, setup, n - 1, light);
 }
@@ -131,13 +131,13 @@ void addLpvRow(std::vector<StabilityCase>& cases, std::string name, std::string 
 }
 
 void addKernel(std::vector<StabilityCase>& cases) {
-  // Decay through a border of 32 cells; a front's flux is a difference of sums in 32-bit floats.
+  // Decay through a border of 32 cells; a wavefront's flux is a difference of sums in 32-bit floats.
   constexpr std::pair<int, double> kDecay[] = {
       {1, 1.138208}, {16, 1.138208}, {32, 1.138115}, {64, 1.123262}, {128, 0.944911}};
   for (const auto& [step, expected] : kDecay)  // clang 14 does not capture structured bindings
     addLpvRow(cases, "one light in 32^3, flux after N steps", fmt::format("N = {}", step),
               [n = step, flux = expected](const StabilityContext& c) {
-                return Measurement{flux, frontFlux(c, {}, n), 3e-5};
+                return Measurement{flux, wavefrontFlux(c, {}, n), 3e-5};
               });
   struct Tiny {
     int cells, step;
@@ -150,7 +150,7 @@ void addKernel(std::vector<StabilityCase>& cases) {
               [t](const StabilityContext& c) {
                 Setup setup;
                 setup.cells = t.cells;
-                return Measurement{t.flux, frontFlux(c, setup, t.step), 5e-6};
+                return Measurement{t.flux, wavefrontFlux(c, setup, t.step), 5e-6};
               });
   for (const auto& [amplifier, gain] :
        {std::pair{3.0f, 0.75}, std::pair{4.0f, 1.0}, std::pair{4.2f, 1.05}, std::pair{5.0f, 1.25}})
@@ -158,7 +158,7 @@ void addKernel(std::vector<StabilityCase>& cases) {
               [amplifier = amplifier, gain = gain](const StabilityContext& c) {
                 Setup setup;
                 setup.amplifier = amplifier;
-                return Measurement{gain, frontFlux(c, setup, 5) / frontFlux(c, setup, 4), 1e-4};
+                return Measurement{gain, wavefrontFlux(c, setup, 5) / wavefrontFlux(c, setup, 4), 1e-4};
               });
 }
 
@@ -166,8 +166,8 @@ void addIterations(std::vector<StabilityCase>& cases) {
   addLpvRow(cases, "no step: the injected light alone", "N = 0", [](const StabilityContext& c) {
     return Measurement{1.0, fluxOf(c, {}, 0, {inTheMiddle(32)}), 1e-6};
   });
-  // The sum over all fronts of 8^3 is bounded by its value at 256 steps, up to float rounding: the light leaves in ever
-  // smaller parts.
+  // The sum over all wavefronts of 8^3 is bounded by its value at 256 steps, up to float rounding: the light leaves in
+  // ever smaller parts.
   for (const bool full : {true, false})
     addLpvRow(
         cases, fmt::format("ten thousand steps in 8^3 over 256, {} bits", full ? 32 : 16), "N = 10000",

@@ -6,7 +6,7 @@
 #include "base/json.hpp"
 #include "base/log.hpp"
 #include "bench/bench.hpp"
-#include "shared/provenance.hpp"
+#include "base/provenance.hpp"
 #include "check/child.hpp"
 #include "bench/bench.hpp"
 #include "check/report.hpp"
@@ -90,7 +90,7 @@ std::vector<Planned> planOf(const CheckOptions& options) {
 // ---------------------------------------------------------------------------------------------------- a child
 
 /// For tests: LUCERNA_CHECK_FAULT=KEY=FAULT makes that unit's process hang, crash, exit or fail.
-void failAsAsked(const std::string& key) {
+void failAsRequested(const std::string& key) {
   const char* asked = std::getenv("LUCERNA_CHECK_FAULT");
   if (!asked || std::string(asked).substr(0, key.size() + 1) != key + "=") return;
   const std::string fault = std::string(asked).substr(key.size() + 1);
@@ -107,7 +107,7 @@ int runChildUnit(const CheckOptions& options) {
       if (unit.key() != options.unit) continue;
       fs::create_directories(fs::path(options.input.out) / "pictures");
       at(unit.key());
-      failAsAsked(unit.key());
+      failAsRequested(unit.key());
       const Finding finding = unit.run(options.input);
       fmt::print("{}: {}\n", finding.right ? "right" : "wrong", finding.text);
       options.input.common.writeJson({{"right", finding.right}, {"text", finding.text}, {"figures", finding.figures}});
@@ -196,8 +196,8 @@ class Check {
   static std::string identityOf(const CheckOptions& options) {
     std::string only;
     for (const std::string& word : options.only) only += " " + word;
-    return fmt::format("{}, host {}, {:g} minutes, only{}, {}", bench::programVersion(),
-                       options.input.common.askedHost(), options.minutes, only, options.input.reference);
+    return fmt::format("{}, host {}, {:g} minutes, only{}, {}", programVersion(), options.input.common.requestedHost(),
+                       options.minutes, only, options.input.reference);
   }
 
   Row rowOfUnit(const Unit& unit, double until) {
@@ -320,7 +320,7 @@ class Check {
     }
     if (options_.minutes != CheckOptions{}.minutes)
       words.insert(words.end(), {"--minutes", fmt::format("{:g}", options_.minutes)});
-    if (const std::string host = options_.input.common.askedHost(); !host.empty())
+    if (const std::string host = options_.input.common.requestedHost(); !host.empty())
       words.insert(words.end(), {"--host", host});
     report.command = bench::shellCommand(words);
     writeFileAtomically(out_ / "check.json", report.json().dump(1) + "\n");

@@ -57,7 +57,7 @@ struct Session {
 };
 
 /// A picture of the parts programs, pictures and stages.
-struct Asked {
+struct Requested {
   std::string name, scene;  ///< scene: below assets/
   std::string technique;
   std::vector<std::string> settings;
@@ -66,7 +66,7 @@ struct Asked {
   /// Full float targets, and shadows by pixel, as `lucerna render` has them.
   RenderSettings parse(glm::ivec2 size, const std::vector<std::string>& more = {}) const;
 };
-const std::vector<Asked>& askedPictures();
+const std::vector<Requested>& requestedPictures();
 
 std::vector<Unit> contextUnits();
 std::vector<Unit> programUnits();

@@ -180,7 +180,7 @@ Comparison compare(const Summary& measured, const Stored& stored) {
 }
 
 /// The picture, with the seconds of its first frame: drivers finish compiling there.
-Image render(Session& session, const Asked& asked, double& seconds) {
+Image render(Session& session, const Requested& asked, double& seconds) {
   at("loading " + asked.scene);
   const Scene scene = loadScene(bench::asset(asked.scene));
   const RenderSettings settings = asked.parse(kSize);
@@ -193,7 +193,7 @@ Image render(Session& session, const Asked& asked, double& seconds) {
   return renderer.readRadiance();
 }
 
-Finding comparePicture(const Asked& asked, const UnitInput& input) {
+Finding comparePicture(const Requested& asked, const UnitInput& input) {
   const Stored stored = storedOf(input.reference, asked.name);
   Session session(input);
   double seconds = 0.0;
@@ -221,7 +221,7 @@ Finding comparePicture(const Asked& asked, const UnitInput& input) {
 
 }  // namespace
 
-RenderSettings Asked::parse(glm::ivec2 size, const std::vector<std::string>& more) const {
+RenderSettings Requested::parse(glm::ivec2 size, const std::vector<std::string>& more) const {
   PictureOptions options;
   options.technique = technique;
   options.settings = settings;
@@ -236,8 +236,8 @@ RenderSettings Asked::parse(glm::ivec2 size, const std::vector<std::string>& mor
   return result;
 }
 
-const std::vector<Asked>& askedPictures() {
-  static const std::vector<Asked> pictures{
+const std::vector<Requested>& requestedPictures() {
+  static const std::vector<Requested> pictures{
       {"path-cornell", "cornell/cornell.json", "path", {"path.samples=4"}},
       {"direct-atrium", "atrium/atrium.json", "direct", {}},
       {"cache-cornell", "cornell/cornell.json", "irradiance-cache", {}},
@@ -255,7 +255,7 @@ const std::vector<Asked>& askedPictures() {
 
 std::vector<Unit> pictureUnits() {
   std::vector<Unit> units;
-  for (const Asked& asked : askedPictures())
+  for (const Requested& asked : requestedPictures())
     units.push_back(
         {"pictures", asked.name, 60.0, [&](const UnitInput& input) { return comparePicture(asked, input); }});
   return units;
@@ -267,7 +267,7 @@ void writeReference(const CommonOptions& common, const std::string& file) {
   Session session(input);
   nlohmann::ordered_json json{{"renderer", session.context.capabilities().renderer},
                               {"driver", session.context.capabilities().version}};
-  for (const Asked& asked : askedPictures()) {
+  for (const Requested& asked : requestedPictures()) {
     double seconds = 0.0;
     json["pictures"][asked.name] = summaryJson(summaryOf(render(session, asked, seconds)));
   }

@@ -55,7 +55,7 @@ class Stopwatch {
   }};
 };
 
-Finding compileTechnique(const Asked& asked, const UnitInput& input) {
+Finding compileTechnique(const Requested& asked, const UnitInput& input) {
   Session session(input);
   const Stopwatch stopwatch(session.programs);
   const Scene scene = loadScene(bench::asset(asked.scene));
@@ -80,8 +80,8 @@ Finding compileMedia(const UnitInput& input) {
 }
 
 /// Programs that no picture of the part has: of other settings, of lamps and haze, and those that inspect a pixel.
-const std::vector<Asked>& variants() {
-  static const std::vector<Asked> all{
+const std::vector<Requested>& variants() {
+  static const std::vector<Requested> all{
       {"direct-lamps", "", "direct", {"shadow.cascades=3"}},
       {"rsm-lamps", "", "rsm", {"rsm.interpolate=off"}},
       {"lpv-lamps", "", "lpv", {"lpv.bounces=2", "lpv.shafts=on", "lpv.glossy=on"}},
@@ -114,7 +114,7 @@ Scene boxOfEverything() {
   return scene;
 }
 
-Finding compileVariant(const Asked& asked, const UnitInput& input) {
+Finding compileVariant(const Requested& asked, const UnitInput& input) {
   Session session(input);
   const Stopwatch stopwatch(session.programs);
   const Scene scene = asked.scene.empty() ? boxOfEverything() : loadScene(bench::asset(asked.scene));
@@ -133,11 +133,11 @@ Finding compileVariant(const Asked& asked, const UnitInput& input) {
 
 std::vector<Unit> programUnits() {
   std::vector<Unit> units;
-  for (const Asked& asked : askedPictures())
+  for (const Requested& asked : requestedPictures())
     if (!asked.scene.starts_with("media/"))
       units.push_back(
           {"programs", asked.name, 60.0, [&](const UnitInput& input) { return compileTechnique(asked, input); }});
-  for (const Asked& asked : variants())
+  for (const Requested& asked : variants())
     units.push_back(
         {"programs", asked.name, 60.0, [&](const UnitInput& input) { return compileVariant(asked, input); }});
   units.push_back({"programs", "media", 90.0, compileMedia});

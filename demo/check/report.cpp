@@ -1,7 +1,7 @@
 #include "check/report.hpp"
 
 #include "base/named_values.hpp"
-#include "shared/provenance.hpp"
+#include "base/provenance.hpp"
 
 #include <fmt/core.h>
 
@@ -76,12 +76,9 @@ int Report::faults() const {
 }
 
 nlohmann::ordered_json Report::json() const {
-  nlohmann::ordered_json json{{"program", bench::programVersion()},
-                              {"command", command},
-                              {"system", systemName()},
-                              {"cpu", bench::cpuName()},
-                              {"seconds", seconds},
-                              {"verdict", faults() == 0 ? "right" : "wrong"},
+  nlohmann::ordered_json json{{"program", programVersion()}, {"command", command},
+                              {"system", systemName()},      {"cpu", cpuName()},
+                              {"seconds", seconds},          {"verdict", faults() == 0 ? "right" : "wrong"},
                               {"faults", faults()}};
   for (const char* key : {"renderer", "vendor", "opengl", "host"}) json[key] = identity(rows, key);
   for (const Row& row : rows) json["rows"].push_back(toJson(row));
@@ -90,8 +87,8 @@ nlohmann::ordered_json Report::json() const {
 
 std::string Report::page() const {
   std::string text = fmt::format("lucerna {}\nrenderer  {}\nOpenGL    {}\nhost      {}\nsystem    {}\nCPU       {}\n",
-                                 bench::programVersion(), identity(rows, "renderer"), identity(rows, "opengl"),
-                                 identity(rows, "host"), systemName(), bench::cpuName());
+                                 programVersion(), identity(rows, "renderer"), identity(rows, "opengl"),
+                                 identity(rows, "host"), systemName(), cpuName());
   const auto ran = static_cast<std::size_t>(
       std::ranges::count_if(rows, [](const Row& row) { return row.status != Status::notRun; }));
   text += fmt::format("command   {}, {:.0f} s\nverdict   {}\n", command, seconds,

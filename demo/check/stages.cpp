@@ -20,7 +20,7 @@ namespace {
 constexpr int kFrames = 60;
 
 /// After a warm-up, up to kFrames frames in the time there is, at least one.
-Finding measureFrames(const Asked& asked, glm::ivec2 size, const UnitInput& input) {
+Finding measureFrames(const Requested& asked, glm::ivec2 size, const UnitInput& input) {
   const auto start = Clock::now();
   Session session(input);
   at("loading " + asked.scene);
@@ -61,9 +61,9 @@ Finding measureFrames(const Asked& asked, glm::ivec2 size, const UnitInput& inpu
 }
 
 /// One of each technique and transport.
-const std::vector<Asked>& walks() {
-  static const std::vector<Asked> all = [] {
-    std::vector<Asked> asked;
+const std::vector<Requested>& walks() {
+  static const std::vector<Requested> all = [] {
+    std::vector<Requested> asked;
     for (const char* scene : {"atrium", "cornell"}) {
       const auto add = [&](const std::string& name, const char* technique, std::vector<std::string> settings) {
         asked.push_back(
@@ -87,11 +87,11 @@ const std::vector<Asked>& walks() {
 std::vector<Unit> stageUnits() {
   std::vector<Unit> units;
   for (const glm::ivec2& size : {glm::ivec2(1920, 1080), glm::ivec2(1280, 720)})
-    for (const Asked& asked : walks()) {
+    for (const Requested& asked : walks()) {
       Unit unit{"stages", fmt::format("{}-{}x{}", asked.name, size.x, size.y), 20.0,
                 [&asked, size](const UnitInput& input) { return measureFrames(asked, size, input); }};
       unit.isLarge = true;
-      for (const Asked& picture : askedPictures())
+      for (const Requested& picture : requestedPictures())
         if (picture.name == asked.name) unit.after = "pictures/" + picture.name;
       units.push_back(std::move(unit));
     }

@@ -88,7 +88,7 @@ constexpr std::array kRooms{
          "tests/physics/media_deviations_test.cpp: RouletteWithoutDivision"},
     Room{"path.roulette-at-surfaces",
          "Light deep in media takes forever; with undivided survivors it is brighter than it would be.",
-         "Roulette is played once per iteration of the outer loop, after the medium as a whole.", "once a turn",
+         "Roulette is played once per iteration of the outer loop, after the medium as a whole.", "once an iteration",
          "at collisions too", "Time a path; with path.roulette-without-division a half-space: 0.95 for 0.5373",
          "tests/physics/media_deviations_test.cpp: RouletteAtSurfaces"},
     Room{"path.unattenuated-shadow-rays", "Objects in or behind a medium are too bright.",

@@ -6,7 +6,7 @@
 #include "base/error.hpp"
 #include "base/statistics.hpp"
 #include "originals/originals.hpp"
-#include "shared/provenance.hpp"
+#include "base/provenance.hpp"
 #include "forward/gpu_scene.hpp"
 #include "forward/sun_frustum.hpp"
 #include "gl/pass.hpp"

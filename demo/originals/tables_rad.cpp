@@ -4,7 +4,7 @@
 // A whole published run takes minutes to days. Here hemicubes of triangles spread evenly over the scene are drawn for a
 // while, and the time of a run of 7 sweeps, as published, is extrapolated from their rate: every hemicube costs the
 // same, since every view draws the whole scene.
-#include "shared/provenance.hpp"
+#include "base/provenance.hpp"
 #include "originals/rad.hpp"
 
 #include "base/clock.hpp"

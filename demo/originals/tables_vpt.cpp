@@ -3,7 +3,7 @@
 // With --scale below 1 the pictures are smaller and have fewer samples. The measured time is then scaled to the
 // published number of pixels times samples, as a path tracer's work is proportional to both. A picture that would take
 // too long ends early and is scaled likewise.
-#include "shared/provenance.hpp"
+#include "base/provenance.hpp"
 #include "originals/vpt_estimators.hpp"
 #include "originals/vpt_series.hpp"
 
@@ -54,14 +54,14 @@ PartFolder::Json measureEstimators(const VptTablesInput& input, glm::ivec2 size,
     const VptResult result =
         renderVpt(input.context, input.programs, picture, scene, size, samples, mostSeconds, estimator.deviations);
     const double ms = result.ms / result.statistics.samples,
-                 turns = result.statistics.iterations / result.statistics.samples;
-    if (firstMs == 0.0) firstMs = ms, firstIterations = turns;
+                 iterations = result.statistics.iterations / result.statistics.samples;
+    if (firstMs == 0.0) firstMs = ms, firstIterations = iterations;
     const double bias = channelMean(result.statistics.mean) / right - 1.0;
     const double error =
         std::hypot(channelMean(result.statistics.meanError), channelMean(reference.statistics.meanError)) / right;
     const double nrmse = measure::errorsOf(result.image, reference.image).nrmse;
     summary += fmt::format("{:<38}{:>12.4g}{:>14.4g}{:>22}{:>11.3g}x{:>13.3g}x\n", estimator.name, ms, nrmse,
-                           fmt::format("{:+.4f} +- {:.4f}", bias, error), ms / firstMs, turns / firstIterations);
+                           fmt::format("{:+.4f} +- {:.4f}", bias, error), ms / firstMs, iterations / firstIterations);
     made["estimators"].push_back({{"estimator", estimator.name},
                                   {"figure", picture.figure},
                                   {"ms_a_sample", ms},
@@ -70,7 +70,7 @@ PartFolder::Json measureEstimators(const VptTablesInput& input, glm::ivec2 size,
                                   {"bias", bias},
                                   {"bias_error", error},
                                   {"time_ratio", ms / firstMs},
-                                  {"iterations_ratio", turns / firstIterations}});
+                                  {"iterations_ratio", iterations / firstIterations}});
   }
   made["summary"] = summary;
   return made;
@@ -86,10 +86,10 @@ std::string growthOf(const std::vector<VptPicture>& pictures, const std::vector<
     const auto over = [&](auto figure) { return figure(i) / figure(first); };
     const double published = over([&](std::size_t k) { return pictures[k].publishedMs / pictures[k].samples; });
     const double time = over([&](std::size_t k) { return results[k].ms / results[k].statistics.samples; });
-    const double turns =
+    const double iterations =
         over([&](std::size_t k) { return results[k].statistics.iterations / results[k].statistics.samples; });
     text += fmt::format("{:<44}{:>12.3g}{:>12.3g}{:>12.3g}{:>16.4g}\n",
-                        fmt::format("{} {}", pictures[i].figure, pictures[i].label), published, time, turns,
+                        fmt::format("{} {}", pictures[i].figure, pictures[i].label), published, time, iterations,
                         results[i].statistics.collisions / (results[i].statistics.samples * pixels));
   }
   return text;
@@ -101,7 +101,7 @@ PartFolder::Json keptOf(const VptResult& result, double preparationMs) {
   return {{"ms", result.ms},
           {"preparation_ms", preparationMs},
           {"samples", s.samples},
-          {"turns", s.iterations},
+          {"iterations", s.iterations},
           {"collisions", s.collisions},
           {"mean", {s.mean.x, s.mean.y, s.mean.z}},
           {"relative_error", s.relativeError}};
@@ -112,7 +112,7 @@ VptResult resultOf(const PartFolder::Json& kept) {
   result.ms = number(kept.at("ms"));
   result.preparationMs = number(kept.at("preparation_ms"));  // loading is in it
   result.statistics.samples = number(kept.at("samples"));
-  result.statistics.iterations = number(kept.at("turns"));
+  result.statistics.iterations = number(kept.at("iterations"));
   result.statistics.collisions = number(kept.at("collisions"));
   for (int c = 0; c < 3; ++c) result.statistics.mean[c] = number(kept.at("mean").at(static_cast<std::size_t>(c)));
   result.statistics.relativeError = number(kept.at("relative_error"));

@@ -38,7 +38,7 @@ struct CommonOptions {
 
   void declare(Command app);
   void apply() const;  ///< checks the requested host and sets the log level
-  std::string askedHost() const;  ///< from the option, else from LUCERNA_HOST; empty: neither
+  std::string requestedHost() const;  ///< from the option, else from LUCERNA_HOST; empty: neither
   std::unique_ptr<Host> makeHost(bool wantsWindow, const HostOptions& options = {}) const;
   void writeJson(const nlohmann::ordered_json& json) const;  ///< no effect without --json
 };

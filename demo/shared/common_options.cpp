@@ -26,13 +26,13 @@ void CommonOptions::declare(Command app) {
               "report missing memory barriers as errors; LUCERNA_CHECK_BARRIERS=1 does so too");
 }
 
-std::string CommonOptions::askedHost() const {
+std::string CommonOptions::requestedHost() const {
   const char* environment = std::getenv("LUCERNA_HOST");
   return !host.empty() ? host : environment ? environment : "";
 }
 
 void CommonOptions::apply() const {
-  if (const std::string asked = askedHost(); !asked.empty()) parseHostKind(asked);
+  if (const std::string asked = requestedHost(); !asked.empty()) parseHostKind(asked);
   if (!json.empty()) checkWritable(json);
   if (quiet) setLogLevel(LogLevel::quiet);
   if (const char* verbose = std::getenv("LUCERNA_VERBOSE"); verbose && *verbose) setLogLevel(LogLevel::verbose);
@@ -40,7 +40,7 @@ void CommonOptions::apply() const {
 
 std::unique_ptr<Host> CommonOptions::makeHost(bool wantsWindow, const HostOptions& options) const {
   if (checkBarriers || gl::barriersCheckedByDefault()) gl::checkBarriers();
-  const std::string asked = askedHost();
+  const std::string asked = requestedHost();
   return asked.empty() ? Host::createDefault(wantsWindow, options) : Host::create(parseHostKind(asked), options);
 }
 

@@ -73,8 +73,8 @@ void Recorder::record(const Shown& shown, double seconds) {
   }
 }
 
-void Recorder::beginCapture(bool isAskedFor) {
-  captures_ = std::exchange(state_.captureWanted, false) || isAskedFor;
+void Recorder::beginCapture(bool isRequested) {
+  captures_ = std::exchange(state_.captureWanted, false) || isRequested;
   if (!captures_) return;
   if (renderDoc_) renderDoc_->begin();
   else state_.say("RenderDoc is missing: install it and start with walk --capture N");

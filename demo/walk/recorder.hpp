@@ -23,7 +23,7 @@ class Recorder {
   /// Adds the picture to the video that is being recorded, or ends it; seconds: for which it is shown.
   void record(const Shown& shown, double seconds);
   bool isRecording() const { return video_.has_value(); }
-  void beginCapture(bool isAskedFor);
+  void beginCapture(bool isRequested);
   void endCapture();
 
  private:

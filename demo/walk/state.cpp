@@ -1,6 +1,6 @@
 #include "walk/state.hpp"
 
-#include "shared/provenance.hpp"
+#include "base/provenance.hpp"
 #include "shared/shell.hpp"
 
 #include <fmt/format.h>

@@ -32,13 +32,13 @@ Container readWhole(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throwCannotOpen(file, errno);
   Container content;
-  // Read in pieces, as pipes have no size; the first piece holds all of a regular file, plus one byte to detect its
+  // Read in chunks, as pipes have no size; the first chunk holds all of a regular file, plus one byte to detect its
   // end.
-  std::size_t piece = 1u << 20, used = 0;
-  if (const std::uintmax_t size = fs::file_size(file, error); !error) piece = static_cast<std::size_t>(size) + 1;
-  for (; stream; piece = 1u << 20) {
-    content.resize(used + piece);
-    stream.read(reinterpret_cast<char*>(content.data()) + used, static_cast<std::streamsize>(piece));
+  std::size_t chunk = 1u << 20, used = 0;
+  if (const std::uintmax_t size = fs::file_size(file, error); !error) chunk = static_cast<std::size_t>(size) + 1;
+  for (; stream; chunk = 1u << 20) {
+    content.resize(used + chunk);
+    stream.read(reinterpret_cast<char*>(content.data()) + used, static_cast<std::streamsize>(chunk));
     used += static_cast<std::size_t>(stream.gcount());
   }
   if (stream.bad()) throwBadInput("{}: cannot be read: {}", file.string(), std::strerror(errno));

@@ -21,7 +21,7 @@ void clearLoggedWarnings() { g_warnings.clear(); }
 namespace detail {
 
 void writeLog(LogLevel level, const std::string& message) {
-  // Repeating a warning for every rung of a bench or frame of a walk adds nothing.
+  // Repeating a warning for every sweep point of a bench or frame of a walk adds nothing.
   const bool known =
       level == LogLevel::warnings && std::find(g_warnings.begin(), g_warnings.end(), message) != g_warnings.end();
   if (level == LogLevel::warnings) g_warnings.push_back(message);

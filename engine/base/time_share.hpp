@@ -1,4 +1,4 @@
-// Work beside frames, within a share of their time: what a piece takes more than it may is paid back by later frames.
+// Work beside frames, within a share of their time: what a chunk takes more than it may is paid back by later frames.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@ namespace lucerna {
 class TimeShare {
  public:
   /// A frame has ended. seconds: that it took, the work in it included. The work may take `share` times the rest: with
-  /// 0.1, frames become 10 % longer. most: seconds that are saved up at most, such as for a piece that takes longer; so
+  /// 0.1, frames become 10 % longer. most: seconds that are saved up at most, such as for a chunk that takes longer; so
   /// that a frame that took long for a reason of its own is not followed by another.
   void frame(double seconds, double share, double most) {
     const double rest = std::max(seconds - inFrame_, 0.0);

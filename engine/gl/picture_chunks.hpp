@@ -20,7 +20,7 @@ class PictureChunks {
   /// of a work group. iterationsOfPixel: an upper estimate.
   template <class Draw>
   void forEach(const glm::ivec2& picture, double iterationsOfPixel, int unit, const Draw& draw) {
-    const glm::ivec2 most = sizeOfPiece(picture, iterationsOfPixel, unit);
+    const glm::ivec2 most = sizeOfChunk(picture, iterationsOfPixel, unit);
     for (int y = 0; y < picture.y; y += most.y)
       for (int x = 0; x < picture.x; x += most.x) {
         const glm::ivec2 corner(x, y), size = glm::min(most, picture - corner);
@@ -30,7 +30,7 @@ class PictureChunks {
       }
   }
   /// Whole rows, or a part of `unit` rows where those are too much.
-  glm::ivec2 sizeOfPiece(const glm::ivec2& picture, double iterationsOfPixel, int unit) const {
+  glm::ivec2 sizeOfChunk(const glm::ivec2& picture, double iterationsOfPixel, int unit) const {
     const double pixels = unmeasured_ / iterationsOfPixel, width = picture.x;
     if (width * picture.y <= kMostOverUnmeasured * pixels) return picture;
     const auto units = [&](double length) { return unit * std::max(1, static_cast<int>(length / unit)); };

@@ -91,7 +91,7 @@ Bodies::Bodies(const Scene& scene, const glm::dvec3& origin, const gl::Capabilit
 gl::ShaderFlags Bodies::flags() const { return {{"BODIES", hasMedia_}, {"CLOUDS", hasClouds_}, {"GRIDS", gridCount_}}; }
 
 void Bodies::bind(const gl::Program& program) const {
-  records_.bindStorage(5);
+  records_.bindStorage(BODY_RECORDS_BUFFER);
   if (gridCount_ == 0) return;
   program.set("gridClouds", gridClouds_);
   grids_.bindStorage(0);  // as in shaders/pathtracer/density.glsl

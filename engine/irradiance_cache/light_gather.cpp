@@ -178,7 +178,7 @@ void LightGather::makeBounces(gl::ProgramLibrary& programs, const gl::Capabiliti
   }
   std::vector<GLuint> list(points_);
   std::iota(list.begin(), list.end(), 0u);
-  pointData_ = storageOf("cache bounce points", points, capabilities);
+  pointData_ = storageOf("bounce cache", points, capabilities);
   list_ = storageOf("cache bounce list", list, capabilities);
   const std::size_t count = std::max<std::size_t>(points_, 1), linkBytes = count * CACHE_LANES * kLinkBytes;
   if (linkBytes > static_cast<std::size_t>(capabilities.maxShaderStorageBlockSize))

@@ -20,10 +20,10 @@ std::vector<bool> paretoFront(std::span<const CostAndError> points) {
     return points[i].cost != points[j].cost ? points[i].cost < points[j].cost : points[i].error < points[j].error;
   });
   const auto errsLess = [&](std::size_t i, std::size_t j) {
-    return isBelow(points[i].error, points[i].errorSpread, points[j].error, points[j].errorSpread);
+    return isBelow(points[i].error, points[i].standardError, points[j].error, points[j].standardError);
   };
   const auto costsLess = [&](std::size_t i, std::size_t j) {
-    return isBelow(points[i].cost, points[i].costSpread, points[j].cost, points[j].costSpread);
+    return isBelow(points[i].cost, points[i].costStandardError, points[j].cost, points[j].costStandardError);
   };
   std::vector<std::size_t> kept;
   for (const std::size_t i : order)

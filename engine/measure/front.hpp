@@ -9,7 +9,7 @@ namespace lucerna::measure {
 struct CostAndError {
   double cost = 0.0;  ///< for example ms
   double error = 0.0;  ///< for example NRMSE
-  double costSpread = 0.0, errorSpread = 0.0;  ///< standard errors; 0: exact
+  double costStandardError = 0.0, standardError = 0.0;  ///< standard errors; 0: exact
 };
 /// Minimum distance of two figures, in standard errors of their difference, to count as different: 95 % of a normal
 /// distribution.

@@ -23,7 +23,7 @@ void checkSizes(const Image& a, const Image& b) {
   if (a.pixels.empty()) throwBadInput("pictures without pixels cannot be compared");
 }
 
-double relativeFloor(double mean) { return kRelativeEpsilon * mean * mean; }
+double relativeEpsilon(double mean) { return kRelativeEpsilon * mean * mean; }
 
 // x / y, and 0 where both are: a black picture equals a black reference.
 double ratio(double x, double y) { return x == 0.0 ? 0.0 : x / y; }
@@ -44,7 +44,7 @@ ImageErrors errorsOf(const Image& image, const Image& reference) {
   }
   const double pixels = static_cast<double>(image.pixels.size());
   result.referenceMean = sum(meanOf(reference)) / 3.0;
-  const double floor = relativeFloor(result.referenceMean);
+  const double epsilon = relativeEpsilon(result.referenceMean);
   double squares = 0.0, relative = 0.0, referenceSquares = 0.0;
   std::vector<double> largest;
   largest.reserve(image.pixels.size());
@@ -53,7 +53,7 @@ ImageErrors errorsOf(const Image& image, const Image& reference) {
     const glm::dvec3 square = d * d;
     squares += sum(square);
     referenceSquares += sum(r * r);
-    for (int c = 0; c < 3; ++c) relative += ratio(square[c], r[c] * r[c] + floor);
+    for (int c = 0; c < 3; ++c) relative += ratio(square[c], r[c] * r[c] + epsilon);
     result.channelBias += d / pixels;
     largest.push_back(std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)}));
   }
@@ -73,14 +73,14 @@ ReferenceNoise noiseOf(const Image& reference, const Image& standardError, doubl
   checkSizes(reference, standardError);
   ReferenceNoise noise;
   noise.meanError = meanError;
-  const double floor = relativeFloor(sum(meanOf(reference)) / 3.0),
+  const double epsilon = relativeEpsilon(sum(meanOf(reference)) / 3.0),
                count = 3.0 * static_cast<double>(reference.pixels.size());
   for (std::size_t i = 0; i < reference.pixels.size(); ++i)
     for (int c = 0; c < 3; ++c) {
       const double r = reference.pixels[i][c],
                    square = static_cast<double>(standardError.pixels[i][c]) * standardError.pixels[i][c];
       noise.variance += square / count;
-      noise.relativeVariance += ratio(square, r * r + floor) / count;
+      noise.relativeVariance += ratio(square, r * r + epsilon) / count;
     }
   return noise;
 }
@@ -109,15 +109,15 @@ SquareErrors squareErrorsOf(const Image& image, const Image& reference, const Im
   checkSizes(image, reference);
   checkSizes(reference, standardError);
   const glm::dvec3 mean = meanOf(reference);
-  const double floor = relativeFloor(sum(mean) / 3.0);
+  const double epsilon = relativeEpsilon(sum(mean) / 3.0);
   double squares = 0.0, relative = 0.0;
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
     const glm::dvec3 r(reference.pixels[i]), d = glm::dvec3(image.pixels[i]) - r, s(standardError.pixels[i]);
     double error = 0.0, relativeError = 0.0;
     for (int c = 0; c < 3; ++c) {
-      const double s2 = s[c] * s[c], spread = std::sqrt((4.0 * std::max(0.0, d[c] * d[c] - s2) + 2.0 * s2) * s2);
-      error += spread;
-      relativeError += ratio(spread, r[c] * r[c] + floor);
+      const double s2 = s[c] * s[c], deviation = std::sqrt((4.0 * std::max(0.0, d[c] * d[c] - s2) + 2.0 * s2) * s2);
+      error += deviation;
+      relativeError += ratio(deviation, r[c] * r[c] + epsilon);
     }
     squares += error * error;
     relative += relativeError * relativeError;

@@ -118,9 +118,9 @@ struct FormFactorParts::Work {
 };
 
 FormFactorParts::FormFactorParts(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& asked,
-                                 const RadiositySolutionSettings& askedSettings)
+                                 const RadiositySolutionSettings& requestedSettings)
     : work_(std::make_unique<Work>()) {
-  RadiositySolutionSettings settings = withDeviations(askedSettings);
+  RadiositySolutionSettings settings = withDeviations(requestedSettings);
   if (const glm::dvec3 origin = floatingOrigin(asked.bounds); origin != glm::dvec3(0.0))
     work_->moved = movedTo(asked, origin);
   const Scene& scene = work_->moved ? *work_->moved : asked;

@@ -610,7 +610,7 @@ Bvh buildBvh(const Scene& scene, const BvhSettings& settings) {
 }
 
 // What a hierarchy does not say: the way back from triangles to its leaves and from nodes to the root, and boxes of
-// children before they were put on a grid, which would grow with each turn.
+// children before they were put on a grid, which would grow with each iteration.
 struct BvhRefit::Index {
   std::vector<std::uint32_t> firstPlace;  ///< of the scene's triangle; those of the next one follow
   std::vector<std::uint32_t> places;  ///< in Bvh::triangles

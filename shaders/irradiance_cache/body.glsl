@@ -7,7 +7,8 @@
 //
 // Flags: BODIES, CLOUDS, GRIDS (clouds on density grids).
 #include "shared/bodies.h"
-layout(std430, binding = 5) readonly restrict buffer BodyBlock { BodyRecord bodies[]; };  // by material
+// By material
+layout(std430, binding = BODY_RECORDS_BUFFER) readonly restrict buffer BodyBlock { BodyRecord bodies[]; };
 
 // The bodies around a ray, by material; -1: none. Of equal ones the last entered counts.
 ivec4 aroundRay = ivec4(-1);

@@ -1,4 +1,4 @@
-// Writes the sum of all fronts in the lookup's format. Used without joined cascades.
+// Writes the sum of all wavefronts in the lookup's format. Used without joined cascades.
 #include "cascades/block.glsl"
 #include "lpv/sums.glsl"
 #include "lpv/result.glsl"

@@ -3,7 +3,7 @@
 //
 // Light that crosses one of a cell's six faces is held back there by the surfels' blocking potential B
 // (lpv/kernel.glsl). The blocked part returns to the cell it came from, times the albedo, as a cosine lobe about the
-// surfels' mean normal. Every face sees the sum of all fronts, T - S; since max(0, sum) <= sum of max(0, .), no more is
+// surfels' mean normal. Every face sees the sum of all wavefronts, T - S; since max(0, sum) <= sum of max(0, .), no more is
 // held back than in the steps themselves.
 // Bounded: clamping negative intensities lets a cosine lobe gain a factor 1.138208 in its first step, never more
 // (engine/lpv/README.md). That factor is divided out, so a source of flux S returns at most rho S, and the sum of all

@@ -1,4 +1,4 @@
-// The propagation kernel, and the units in which fronts and potentials are stored for it.
+// The propagation kernel, and the units in which wavefronts and potentials are stored for it.
 #if FACE_KERNEL
 #include "lpv/kernel_faces.glsl"
 const vec4 kStoredUnits = vec4(1.0);  // coefficients as stored

@@ -1,4 +1,4 @@
-// The sums of fronts, in 32 bits. FROM_BUFFER: from the buffers of the compute steps, else from the textures that the
+// The sums of wavefronts, in 32 bits. FROM_BUFFER: from the buffers of the compute steps, else from the textures that the
 // layered pass blends into. They cover all steps, or, with joined cascades, those before and those after the hand-over.
 // Needs cascades/block.glsl.
 #if FROM_BUFFER

@@ -171,7 +171,7 @@ int bvhStackPlace(int entry) { return entry; }
 // after 65,535 iterations of a vector of lanes).
 uint loopIterations = 0u;
 
-// A traversal visits no node twice, so this bounds its turns whatever the nodes hold.
+// A traversal visits no node twice, so this bounds its iterations whatever the nodes hold.
 int bvhNodeCount() { return textureSize(bvhNodes) / BVH_NODE_TEXELS; }
 
 // Whether a ray is one: all finite, and with a direction. Others hit nothing, but their comparisons would not say so:
@@ -228,7 +228,7 @@ void advanceRay(inout BvhTraversal s, bool any) {
                      base - error, base + error, s.tMin, s.hit.t, n1.w, s.ray.octant);
   s.siblings = uvec2(n1.x, (hits & 0xff000000u) | (n0.w >> 24));
   uint leaves = hits & 0x00ffffffu;  // triangles to test, counted from the node's first
-  while (leaves != 0u) {  // ends: each turn clears the highest of 24 bits
+  while (leaves != 0u) {  // ends: each iteration clears the highest of 24 bits
     int k = bvhHighest(leaves);
     leaves &= ~(1u << k);
     ++s.tested;

@@ -1,9 +1,11 @@
-// Bodies with a medium inside, as previews see them: one record per material (storage block 5; 0 and 1: density grids,
-// shared/media.h). Lengths in scene units.
+// Bodies with a medium inside, as previews see them: one record per material. Density grids are in storage blocks 0
+// and 1 (shared/media.h). Lengths in scene units.
 #pragma once
 #include "shared/types.h"
 
 SHARED_BEGIN
+
+#define BODY_RECORDS_BUFFER 5
 
 #define BODY_NONE 0     // no closed boundary
 #define BODY_CLEAR 1    // a dielectric without a medium

@@ -39,7 +39,7 @@ SHARED_BEGIN
 #define CACHE_LANES 64          // per work group, one path each
 #define CACHE_PART_GROUPS 1792  // work groups of a submission, at most (engine/irradiance_cache/light_gather.hpp)
 #define CACHE_PARTS 10          // of the list of records to be lit: 2^14 groups
-#define CACHE_MOST_OPENING 2048 // turns of a lane that may open nodes of a light tree
+#define CACHE_MOST_OPENING 2048 // iterations of a lane that may open nodes of a light tree
 #define CACHE_MOST_NEAR 12      // texels of a lane that give light by their outline
 #define CACHE_FULL_PATHS 256.0  // from here on: full weight, no averaging with neighbours
 #define CACHE_FRONT 1u

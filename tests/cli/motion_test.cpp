@@ -193,7 +193,7 @@ TEST_F(Motion, BenchDynamicKnowsTheStripBehindAWallThatOpens) {
   }
 }
 
-// The budgets of a technique are rows of their own: with more samples the irradiance cache is nearer to the truth.
+// The budgets of a technique are rows of their own: with more samples the irradiance cache is nearer to the reference.
 TEST_F(Motion, BenchDynamicMeasuresBudgets) {
   const RunResult result =
       lucerna("bench dynamic '" LUCERNA_SOURCE_DIR

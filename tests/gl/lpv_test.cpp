@@ -3,7 +3,7 @@
 //
 // Errors are relative to the largest coefficient of the grid that is compared (see relativeError).
 // - Storage::full: 1e-5.
-// - Storage::half: 1e-3, after any number of steps: fronts and the result are rounded to the nearest half, sums are
+// - Storage::half: 1e-3, after any number of steps: wavefronts and the result are rounded to the nearest half, sums are
 // kept in 32 bits.
 #include "support/gl_fixture.hpp"
 #include "support/long_tests.hpp"
@@ -213,7 +213,7 @@ ReferenceRun runReference(const CaseInputs& c, int cells, int iterations, bool b
 
 class LpvAgainstReference : public LpvGlTest {};
 
-TEST_F(LpvAgainstReference, Injection) {
+TEST_F(LpvAgainstReference, InjectsLikeTheReference) {
   double worst = 0.0;
   for (const Case& c : kCases) {
     const CaseInputs inputs(c, 1);
@@ -586,7 +586,7 @@ TEST_F(LpvKnownAnswers, BorderDecay) {
   }
 }
 
-TEST_F(LpvKnownAnswers, TinyGrids) {
+TEST_F(LpvKnownAnswers, TinyGridsLoseLightAtTheirBorders) {
   const std::array<std::vector<double>, 3> rows = {std::vector<double>{0.0},
                                                    {0.333333, 0.110472, 0.042324},
                                                    {1.138208, 0.880462, 0.566864, 0.355257, 0.233236, 0.147829}};

@@ -385,7 +385,8 @@ TEST_F(MediaFunctions, TheDensitysIntegralIsExactAndEndsByItself) {
     most = std::max(most, static_cast<double>(answers[i].a.y));
     deepest = std::max(deepest, exact);
   }
-  std::printf("[ measured ] optical depths to %.3g off by %.1e at most; %.0f turns at most\n", deepest, worst, most);
+  std::printf("[ measured ] optical depths to %.3g off by %.1e at most; %.0f iterations at most\n", deepest, worst,
+              most);
   EXPECT_GT(deepest, 5.0);
   EXPECT_LT(worst, 1e-4);
   EXPECT_LE(most, 19 + 8 + 13 + 3);

@@ -60,8 +60,8 @@ TEST_F(PathTracerTest, NoSubmissionTakesMoreTurnsThanIsSafeHoweverEmptyThePictur
   picture.record(24);
   const PathTracer::Submissions submissions = picture.submissions();
   const std::uint64_t lanes = capabilities().softwareRenderer ? 128u * 128u : 256u * 256u;
-  // A tile's first: the share of each lane, 256 turns, and one segment more; here some 200.
-  std::printf("[ measured ] largest submission %.3g turns; of those that begin a tile %.3g\n",
+  // A tile's first: the share of each lane, 256 iterations, and one segment more; here some 200.
+  std::printf("[ measured ] largest submission %.3g iterations; of those that begin a tile %.3g\n",
               static_cast<double>(submissions.largest), static_cast<double>(submissions.begun));
   EXPECT_GE(submissions.begun, lanes * 200);  // the box took its share
   EXPECT_LE(submissions.begun, lanes * 512);

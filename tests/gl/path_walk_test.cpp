@@ -36,7 +36,8 @@ Scene milkBall(double ior) {
 }
 
 TEST_F(PathWalkTest, LongSubmissionsLoseNoLoopTurns) {
-  // llvmpipe leaves every loop of a shader after 65,535 turns in all: a submission of many segments must not get there.
+  // llvmpipe leaves every loop of a shader after 65,535 iterations in all: a submission of many segments must not get
+  // there.
   PathTracer::Settings settings;
   settings.size = {4, 4};
   settings.walks = false;

@@ -38,7 +38,7 @@ class RadiositySolutions : public test::SharedProgramsTest {
   }
 };
 
-TEST_F(RadiositySolutions, Furnaces) {
+TEST_F(RadiositySolutions, FurnacesHoldTheirRadiosity) {
   for (const double rho : {0.0, 0.5, 0.9, 0.999})
     for (const Scene& scene :
          {dark(cubeRoom(2, rho, 1.0)), sphere(1, [rho, m = -1](SceneBuilder&b, const glm::dvec3&) mutable {

@@ -233,7 +233,7 @@ TEST_F(HemicubeVisibilityTest, SolutionsAgreeAndAStoppedOneGoesOnAsItBegan) {
   EXPECT_EQ(resumed.exitance, solutions[1].exitance);
 }
 
-TEST_F(HemicubeVisibilityTest, Names) {
+TEST_F(HemicubeVisibilityTest, NamesAreReadBack) {
   for (const HemicubeVisibility way : kWays) EXPECT_EQ(parseName<HemicubeVisibility>(nameOf(way), ""), way);
   EXPECT_EQ(parseName<HemicubeVisibility>("auto", ""), HemicubeVisibility::automatic);
   EXPECT_THROW(parseName<HemicubeVisibility>("guess", ""), Error);

@@ -287,7 +287,7 @@ TEST_F(RendererGl, GpuBytesIsTheSumOfWhatIsThere) {
   s.fullFloatTarget = false;
   EXPECT_EQ(Renderer(context(), programs(), scene, s).gpuBytes(), geometry + targets - pixels * 8 + shadow + frame);
 
-  // One cascade of 16^3, the result in 16-bit floats, in a buffer and in textures; injected light, two fronts and
+  // One cascade of 16^3, the result in 16-bit floats, in a buffer and in textures; injected light, two wavefronts and
   // their sum in 32, as potentials on corners and faces; of 4^3 bricks three words each after a dispatch's three and
   // their count.
   s = settings(Component::indirect);

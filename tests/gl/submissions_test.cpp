@@ -69,7 +69,7 @@ TEST_F(Submissions, NoPieceOfAPictureIsMoreThanIsSafe) {
                         {{7680, 4320}, 100.0, 1, true},
                         {{3840, 2160}, 65536.0, 8, true},  // a row of work groups is too much
                         {{16384, 16384}, 65536.0, 1, true}}) {
-    const glm::ivec2 chunk = gl::PictureChunks().sizeOfPiece(c.picture, c.iterationsOfPixel, c.unit);
+    const glm::ivec2 chunk = gl::PictureChunks().sizeOfChunk(c.picture, c.iterationsOfPixel, c.unit);
     EXPECT_EQ(chunk != c.picture, c.isCut) << c.picture.x;
     EXPECT_LE(c.iterationsOfPixel * chunk.x * chunk.y, c.isCut ? gl::kUnmeasuredIterations : kMost) << c.picture.x;
     for (int axis = 0; axis < 2; ++axis) EXPECT_TRUE(chunk[axis] == c.picture[axis] || chunk[axis] % c.unit == 0);
@@ -149,7 +149,7 @@ TEST_F(Submissions, RoundsAreHandedOverOneByOne) {
 
 // The walk of shaders/irradiance_cache/gather/gather.comp through a light tree, with other choices of the nodes that
 // are opened.
-double iterationsOfWalk(int depth, int top, int layers, const std::function<bool(int turn, int depth)>& opens) {
+double iterationsOfWalk(int depth, int top, int layers, const std::function<bool(int i, int depth)>& opens) {
   const std::uint64_t bits = 2 * static_cast<std::uint64_t>(top);
   const auto firstOf = [](int d) { return ((std::uint64_t{1} << (2 * d)) - 1) / 3; };
   const auto depthOf = [&](std::uint64_t node) {
@@ -159,9 +159,9 @@ double iterationsOfWalk(int depth, int top, int layers, const std::function<bool
   };
   const std::uint64_t tops = static_cast<std::uint64_t>(layers) << bits, firstTop = firstOf(top);
   std::uint64_t coarsest = 0, root = firstTop, node = root;
-  int turn = 0;
-  for (; coarsest < tops; ++turn) {
-    if (node < firstOf(depth) && turn < CACHE_MOST_OPENING && opens(turn, depthOf(node))) {
+  int i = 0;
+  for (; coarsest < tops; ++i) {
+    if (node < firstOf(depth) && i < CACHE_MOST_OPENING && opens(i, depthOf(node))) {
       node = 4 * node + 1;
       continue;
     }
@@ -173,7 +173,7 @@ double iterationsOfWalk(int depth, int top, int layers, const std::function<bool
     coarsest += CACHE_LANES;
     root = node = firstTop + (coarsest & ((std::uint64_t{1} << bits) - 1));
   }
-  return turn;
+  return i;
 }
 
 TEST_F(Submissions, NoLaneGathersForLongerThanIsSaid) {
@@ -186,8 +186,8 @@ TEST_F(Submissions, NoLaneGathersForLongerThanIsSaid) {
         LightGather::iterationsOfLane(depth, top, layers) - CACHE_MOST_NEAR - 4.0 * depth - gl::kIterationsOfRay;
     for (int last = CACHE_MOST_OPENING - 3 * depth; last <= CACHE_MOST_OPENING; ++last) {
       // Waits before the last levels, then opens all the way down.
-      const double iterations = iterationsOfWalk(
-          depth, top, layers, [&](int turn, int at) { return turn >= last - depth || at + 4 < depth; });
+      const double iterations =
+          iterationsOfWalk(depth, top, layers, [&](int i, int at) { return i >= last - depth || at + 4 < depth; });
       EXPECT_LE(iterations, most) << depth << ", " << layers;
       longest = std::max(longest, iterations / most);
     }

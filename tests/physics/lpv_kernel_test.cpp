@@ -212,7 +212,7 @@ TEST(LpvSh, FlatLobeDeviation) {
 
 // ---- solid angles ---------------------------------------------------------------------------------------------------
 
-TEST(LpvSolidAngle, Analytic) {
+TEST(LpvSolidAngle, MatchesTheClosedForm) {
   EXPECT_PRINTED("0.4006696846462392", frontSolidAngle());
   EXPECT_PRINTED("0.4234313544367392", sideSolidAngle());
   EXPECT_NEAR(frontSolidAngle() + 4.0 * sideSolidAngle(), 2.0 * kPi / 3.0, 1e-14);
@@ -371,7 +371,7 @@ TEST(LpvBorder, DecayTable) {
   EXPECT_EQ(row, steps.size());
 }
 
-TEST(LpvBorder, TinyGrids) {
+TEST(LpvBorder, TinyGridsLoseLightAtTheirBorders) {
   // The source sits at cell n/2 and points to +z: in 2^3 that is the corner, three of its six neighbours are missing.
   const std::array<std::vector<std::string>, 3> rows = {
       std::vector<std::string>{"0"},
@@ -401,7 +401,7 @@ TEST(LpvBorder, UniformFill) {
   }
 }
 
-TEST(LpvBorder, NonCubic) {
+TEST(LpvBorder, GridsNeedNotBeCubes) {
   // An isotropic source gives each neighbour a sixth of its flux: what is missing has left through the border.
   const auto kept = [](const glm::ivec3& dims) {
     const GridSpec grid{dims, glm::dvec3(0.0), 1.0};
@@ -712,7 +712,7 @@ TEST(LpvGrid, StoredAsAThreeDimensionalTexture) {
 
 // ---- injection ------------------------------------------------------------------------------------------------------
 
-TEST(LpvInjection, OneVpl) {
+TEST(LpvInjection, OneVplFillsItsCell) {
   VolumeRgb volume = makeVolumeRgb({glm::ivec3(8), {-4.0, -4.0, -4.0}, 1.0});
   const glm::dvec3 normal = glm::normalize(glm::dvec3(1, 2, -2));
   const glm::dvec3 phi(3.0, 0.5, 7.0);
@@ -1016,7 +1016,7 @@ TEST(LpvGeometry, BlockingNeverAddsLight) {
 
 // ---- lookup ---------------------------------------------------------------------------------------------------------
 
-TEST(LpvLookup, Trilinear) {
+TEST(LpvLookup, IsTrilinear) {
   const GridSpec grid{{6, 5, 4}, {-1.0, 2.0, 10.0}, 0.5};
   Volume volume(grid);
   const auto linear = [](const glm::dvec3& p) { return Sh{1.0 + 2.0 * p.x - p.y + 0.5 * p.z, {p.x, p.y, -p.z}}; };

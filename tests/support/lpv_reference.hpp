@@ -214,9 +214,9 @@ PropagatedRgb propagate(const VolumeRgb& injected, int iterations, const KernelO
 VolumeRgb injectReflectance(const GridSpec& lpvGrid, std::span<const Vpl> surfels);
 /// What a cosine lobe along an axis gains in its first step, by the clamp of negative intensities: 1.138208.
 double clampGain();
-/// What surfaces throw back of `light`, the sum of fronts without its source: at each of a cell's six faces the flux to
-/// the five faces beyond that the potential holds back, times the mean albedo over clampGain(), back into the cell as a
-/// lobe about the potential's axis.
+/// What surfaces throw back of `light`, the sum of wavefronts without its source: at each of a cell's six faces the
+/// flux to the five faces beyond that the potential holds back, times the mean albedo over clampGain(), back into the
+/// cell as a lobe about the potential's axis.
 VolumeRgb reflect(const VolumeRgb& light, const Volume& geometry, const VolumeRgb& reflectance);
 struct Bounced {
   VolumeRgb source;  ///< injected light and what came back of it, `bounces` - 1 times

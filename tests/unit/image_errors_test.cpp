@@ -250,7 +250,7 @@ TEST(Front, RowsThatCannotBeToldApartAreEqual) {
   const std::vector<CostAndError> exact{{1, 0.5}, {2, 0.4999}, {3, 0.3}, {4, 0.31}};
   EXPECT_EQ(paretoFront(exact), (std::vector<bool>{true, true, true, false}));
   std::vector<CostAndError> points = exact;
-  for (CostAndError& p : points) p.errorSpread = 0.01;
+  for (CostAndError& p : points) p.standardError = 0.01;
   EXPECT_EQ(paretoFront(points), (std::vector<bool>{true, false, true, false}));
   const std::vector<CostAndError> chain{{1, 0.50, 0, 0.02}, {2, 0.46, 0, 0.02}, {3, 0.42, 0, 0.02}};
   EXPECT_EQ(paretoFront(chain), (std::vector<bool>{true, false, true}));
@@ -360,7 +360,7 @@ TEST(Flip, GreenAgainstBlueIsTheLargestOfAll) { EXPECT_NEAR(flipOfUniform({0, 1,
 TEST(Flip, BlackAgainstWhite) { EXPECT_NEAR(flipOfUniform(glm::vec3(0.0f), glm::vec3(1.0f)), 0.96738, 2e-5); }
 
 // Grey 0.2 and 0.25, L* = 116 cbrt(Y) - 16: 51.8372 and 57.0754; 5.2382^0.7 = 3.18734, times 0.95 / 16.51044 = 0.18340.
-TEST(Flip, TwoGreys) { EXPECT_NEAR(flipOfUniform(glm::vec3(0.25f), glm::vec3(0.2f)), 0.18340, 2e-5); }
+TEST(Flip, TwoGreysDifferAsPublished) { EXPECT_NEAR(flipOfUniform(glm::vec3(0.25f), glm::vec3(0.2f)), 0.18340, 2e-5); }
 
 // A lattice of colours with an edge and a spot against one with the edge elsewhere, a tint and no spot. The means are
 // those of tests/support/flip.py, which has whole two-dimensional kernels where this one's are separated, and luminance

@@ -55,8 +55,8 @@ void main() {
     sum.position += weight * children[i].position;
     sum.normal += weight * n;
     // Second moments, for now.
-    sum.spread += weight * (children[i].spread + n * n);
-    sum.mixed += weight * (children[i].mixed + vec3(n.x * n.y, n.x * n.z, n.y * n.z));
+    sum.variances += weight * (children[i].variances + n * n);
+    sum.covariances += weight * (children[i].covariances + vec3(n.x * n.y, n.x * n.z, n.y * n.z));
 #if MEAN_AREA
     sum.area += weight * children[i].area;
 #else
@@ -69,8 +69,8 @@ void main() {
     sum.position /= weights;
     sum.normal /= weights;
     vec3 n = sum.normal;
-    sum.spread = sum.spread / weights - n * n;
-    sum.mixed = sum.mixed / weights - vec3(n.x * n.y, n.x * n.z, n.y * n.z);
+    sum.variances = sum.variances / weights - n * n;
+    sum.covariances = sum.covariances / weights - vec3(n.x * n.y, n.x * n.z, n.y * n.z);
 #if MEAN_AREA
     sum.area /= weights;
 #endif

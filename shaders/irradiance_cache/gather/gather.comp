@@ -112,7 +112,7 @@ Found gatherAt(vec3 position, vec3 normal, uint lane, uint seed) {
   uint root = firstTop + (top & ((1u << topBits) - 1u)), layerStart = (top >> topBits) * ofLayer, node = root;
   // Turns that may open nodes; then what is left: three siblings on each level, and the lane's coarsest nodes.
   int most = CACHE_MOST_OPENING + 3 * (treeDepth - treeTop) + 1 + int(tops) / CACHE_LANES + 1;
-  for (int turn = 0; turn < most && top < tops; ++turn) {  // ends: most follows from uniforms
+  for (int i = 0; i < most && top < tops; ++i) {  // ends: most follows from uniforms
     LightNode here = nodeAt(layerStart + node);
     vec3 away = here.position - position;
     float r2 = dot(away, away), height = dot(normal, away);
@@ -124,7 +124,7 @@ Found gatherAt(vec3 position, vec3 normal, uint lane, uint seed) {
       counts = false;
     }
 #endif
-    if (counts && !isLeaf && turn < CACHE_MOST_OPENING && r2 < kOpen * kOpen * here.radius * here.radius) {
+    if (counts && !isLeaf && i < CACHE_MOST_OPENING && r2 < kOpen * kOpen * here.radius * here.radius) {
       node = 4u * node + 1u;
       continue;
     }

@@ -43,7 +43,7 @@ struct LightNode {
   vec3 position;
   float radius;
   vec3 normal;  // mean, at most 1 long
-  vec3 spread, mixed;  // covariance: xx yy zz; xy xz yz
+  vec3 variances, covariances;  // xx yy zz; xy xz yz
   float area;
   vec3 flux;
 };
@@ -53,8 +53,8 @@ const LightNode kUnlit = LightNode(vec3(0.0), -1.0, vec3(0.0), vec3(0.0), vec3(0
 void packNode(LightNode node, out uvec4 a, out uvec4 b, out uvec4 c) {
   float sum = node.flux.r + node.flux.g + node.flux.b;
   a = uvec4(floatBitsToUint(node.position), floatBitsToUint(node.radius));
-  b = uvec4(packSnorm2x16(node.normal.xy), packSnorm2x16(vec2(node.normal.z, node.spread.x)),
-            packSnorm2x16(vec2(node.spread.y, node.mixed.x)), packSnorm2x16(node.mixed.yz));
+  b = uvec4(packSnorm2x16(node.normal.xy), packSnorm2x16(vec2(node.normal.z, node.variances.x)),
+            packSnorm2x16(vec2(node.variances.y, node.covariances.x)), packSnorm2x16(node.covariances.yz));
   c = uvec4(floatBitsToUint(node.area), floatBitsToUint(sum),
             packUnorm2x16(sum > 0.0 ? node.flux.rg / sum : vec2(0.0)), 0u);
 }
@@ -73,8 +73,8 @@ LightNode unpackNode(uvec4 a, uvec4 b, uvec4 c) {
 //   (<m, d> + mean |<n, d>|) / 2, and mean |<n, d>| is at most sqrt(<m, d>^2 + d^T C d),
 // m being the mean and C the covariance. Exact for one normal, and for two whose cosines are equal or opposite.
 float meanCosine(LightNode node, vec3 d) {
-  float mean = dot(node.normal, d), variance = dot(node.spread, d * d) +
-                                               2.0 * dot(node.mixed, vec3(d.x * d.y, d.x * d.z, d.y * d.z));
+  float mean = dot(node.normal, d), variance = dot(node.variances, d * d) +
+                                               2.0 * dot(node.covariances, vec3(d.x * d.y, d.x * d.z, d.y * d.z));
   // Covariances are known to some 1e-4: below, a flat node's.
   return variance > 1e-3 ? 0.5 * (mean + sqrt(mean * mean + variance)) : max(mean, 0.0);
 }

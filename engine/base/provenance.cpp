@@ -1,4 +1,4 @@
-#include "shared/provenance.hpp"
+#include "base/provenance.hpp"
 
 #include "commit.hpp"
 
@@ -7,7 +7,7 @@
 #include <fstream>
 #include <thread>
 
-namespace lucerna::demo::bench {
+namespace lucerna {
 
 std::string programVersion() { return fmt::format("{}, commit {}", LUCERNA_VERSION, LUCERNA_COMMIT); }
 
@@ -22,4 +22,4 @@ std::string cpuName() {
   return fmt::format("{}, {} threads", name, std::thread::hardware_concurrency());
 }
 
-}  // namespace lucerna::demo::bench
+}  // namespace lucerna

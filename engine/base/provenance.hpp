@@ -3,11 +3,11 @@
 
 #include <string>
 
-namespace lucerna::demo::bench {
+namespace lucerna {
 
 /// "0.9.0, commit 1a2b3c4", as built; "commit unknown" if the sources were not a git checkout. "+": with changes.
 std::string programVersion();
 /// The processor's name and count, from /proc/cpuinfo; "unknown processor" elsewhere.
 std::string cpuName();
 
-}  // namespace lucerna::demo::bench
+}  // namespace lucerna
