@@ -48,16 +48,16 @@ std::string settingsPage() {
       "Made by `lucerna info --settings` from the tables of the techniques (engine/NAME/technique.cpp) and of the "
       "frame\n"
       "(engine/render/settings.cpp); a test compares them.\n\n"
-      "Set one by `--set KEY=VALUE`, or in a settings file (`--settings FILE`: a JSON object with `technique`,\n"
-      "`fidelity`, `deviations` and `settings`). A setting that the technique does not read is a warning. What a\n"
-      "change costs: *uniform*, the next frame has it; *rebuild*, programs are compiled and textures allocated anew;\n"
-      "*solution*, radiosity is solved anew. Sources are those of shaders/REFERENCES.md.\n";
+      "Change a setting by `--set KEY=VALUE` or in a settings file (`--settings FILE`: a JSON object of `technique`,\n"
+      "`fidelity`, `deviations` and `settings`). A setting that the technique does not read causes a warning.\n"
+      "Cost of a change: *uniform*, it takes effect in the next frame; *rebuild*, programs are compiled and textures\n"
+      "allocated anew; *solution*, radiosity is solved anew. Sources are those of shaders/REFERENCES.md.\n";
   std::string_view group;
   for (const Setting& setting : allSettings()) {
     const std::string_view stage = setting.key.substr(0, setting.key.find('.'));
     if (stage != group)
       text += fmt::format(
-          "\n## {}\n\n| Key | Values | Default | Unit | Meaning | Read by | A change costs | Source "
+          "\n## {}\n\n| Key | Values | Default | Unit | Meaning | Read by | Cost of a change | Source "
           "|\n|---|---|---|---|---|---|---|---|\n",
           stage);
     group = stage;
@@ -67,10 +67,10 @@ std::string settingsPage() {
   }
   text +=
       "\n## Deviations\n\n"
-      "What the published originals do differently, each by itself: `--deviation NAME=on|off`. Those with a star are\n"
-      "on with `--fidelity original`, which is `thesis`; those with a plus with `demo`, the program published with\n"
-      "the thesis on light propagation. Formulas, sources and measured effects are in the README.md of each "
-      "technique.\n"
+      "Differences of the published originals, each with a switch: `--deviation NAME=on|off`. A star marks those\n"
+      "switched on by `--fidelity original` (the same as `thesis`), a plus those switched on by `demo`, the program\n"
+      "published with the thesis on light propagation. The README.md of each technique has formulas, sources and\n"
+      "measured effects.\n"
       "\n| Name | | Meaning |\n|---|---|---|\n";
   for (const Deviation& deviation : allDeviations())
     text += fmt::format("| `{}` | {} | {} |\n", deviation.name,

@@ -121,10 +121,11 @@ std::string section(const MeasuredPass& p, const MeasuredFrame& frame, std::size
 }  // namespace
 
 std::string frameMarkdown(const FramePage& page, const std::string& folder) {
-  std::string text =
-      "# A frame, pass by pass\n\n```\n" + page.command + "\n```\n" +
-      paragraph(fmt::format("makes this page. Scene {}, {}. Renderer {}, on {}: times are of that renderer.",
-                            page.scene, page.view, page.renderer, page.cpu));
+  std::string text = "# A frame, pass by pass\n\n```\n" + page.command + "\n```\n" +
+                     paragraph(fmt::format(
+                         "makes this page; `docs/frame/make` runs it for docs/frame.md, turns its pictures into JPEG "
+                         "and links its sources. Scene {}, {}. Renderer {}, on {}: times are of that renderer.",
+                         page.scene, page.view, page.renderer, page.cpu));
   text += item(fmt::format(
       "**ms**: median time of the pass, with the 5th and 95th percentile, over the first {} frames of a view; every "
       "pass runs in each (`frame.reuse=off`).",

@@ -43,9 +43,8 @@ const Pass kPasses[] = {
      {"1 flux", "1 normal", "1 position"}},
     {"geometry",
      "Depth and normals",
-     "Draws depth and the normal of the surface in each pixel. Light is looked for at these points, and shading "
-     "draws "
-     "only what is equal in depth.",
+     "Draws depth and the normal of the surface in each pixel. Later passes look up light at these points, and "
+     "shading draws only surfaces of equal depth.",
      {"engine/forward/visible_surfaces.cpp", "shaders/forward/visible.frag"},
      Gives::surfaces,
      {"normals", "depth"}},
@@ -112,7 +111,7 @@ const Pass kPasses[] = {
     {"shading",
      "Shading",
      "Draws depth, unless it is known, then the visible surfaces: their emission, the direct light of sun and lamps, "
-     "and the light that the passes before have found.",
+     "and the light found by the previous passes.",
      {"engine/render/renderer.cpp", "shaders/forward/surface.glsl"},
      Gives::surfaces},
     {"environment",

@@ -14,7 +14,7 @@ std::span<const Setting> pathSettings() {
        "a pixel in the first frame of a view, at least"},
       {"path.scatterings",
        number(SETTING_FIELD(PathSettings, scatterings), 0, 1000000, "all", PathSettings::kAllScatterings), "",
-       "between light and camera; light that was scattered more often is left out (--bounces; 2 is one bounce)"},
+       "between light and camera; light scattered more often is left out (--bounces; 2 is one bounce)"},
       {"path.seed", number(SETTING_FIELD(PathSettings, seed), 0, 4294967295.0), "", "of the random numbers (--seed)"},
   };
   return table;
@@ -26,7 +26,7 @@ std::span<const Deviation> pathDeviations() {
                         "free flights from the smallest extinction, weighted only by the transmittance", both,
                         PathSettings, deviations.distanceWithoutPdf),
       LUCERNA_DEVIATION("path.boosted-interaction",
-                        "probability of an interaction raised to a half, and not divided out", both, PathSettings,
+                        "probability of an interaction raised to one half, and not divided out", both, PathSettings,
                         deviations.boostedInteraction),
       LUCERNA_DEVIATION("path.roulette-without-division", "survivors of Russian roulette are not weighted", both,
                         PathSettings, deviations.rouletteWithoutDivision),
@@ -43,8 +43,8 @@ std::span<const Deviation> pathDeviations() {
       LUCERNA_DEVIATION("path.roulette-at-surfaces",
                         "Russian roulette only at surfaces, never at a collision in a medium", both, PathSettings,
                         deviations.rouletteAtSurfaces),
-      LUCERNA_DEVIATION("path.unattenuated-shadow-rays", "media on the way to a lamp do not attenuate its light", both,
-                        PathSettings, deviations.unattenuatedShadowRays),
+      LUCERNA_DEVIATION("path.unattenuated-shadow-rays", "media between surface and lamp do not attenuate its light",
+                        both, PathSettings, deviations.unattenuatedShadowRays),
       LUCERNA_DEVIATION("path.unscaled-refraction", "radiance keeps its value where light is refracted", both,
                         PathSettings, deviations.unscaledRefraction)};
   return table;

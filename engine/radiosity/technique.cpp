@@ -31,7 +31,7 @@ std::span<const Setting> radiositySettings() {
       {"radiosity.seed", number(SETTING_FIELD(View, solution.hemicubes.seed), 0, 4294967295.0), "",
        "of the hemicubes' random roll", "", solution},
       {"radiosity.rolls", number(SETTING_FIELD(View, solution.hemicubes.rolls), 1, 64), "hemicubes",
-       "per patch, turned against each other, whose mean counts: antialiasing; twice the resolution is better (4 rolls "
+       "per patch, turned against each other and averaged: antialiasing; twice the resolution is better (4 rolls "
        "cost as much)",
        "[RAD2008]", solution},
       {"radiosity.exact-pixels", number(SETTING_FIELD(View, solution.hemicubes.exactPixels), 0, 1 << 24), "pixels",

@@ -19,24 +19,22 @@ std::span<const Setting> sharedSettings() {
   constexpr auto rebuild = SettingCost::rebuild, uniform = SettingCost::uniform;
   static const std::vector<Setting> table{
       {"shadow.transport", choice(FRAME_FIELD(shadows)), "",
-       "how the way to sun and lamps is tested: map, maps of depth; rays, exactly, with penumbrae over a pixel's "
+       "occlusion of sun and lamps: map, by shadow maps; rays, exactly, with penumbrae over a pixel's "
        "samples",
        "", rebuild, "", "", "shadows"},
       {"shadow.size", number(FRAME_FIELD(shadow.size), 1, 16384), "texels",
        "side of the sun's shadow map, of each cascade", "", rebuild, "shadow.transport=map", "", "shadows"},
       {"shadow.cascades",
        number(FRAME_FIELD(shadow.cascades.cascades), 1, SUN_MAX_CASCADES, "auto", SunCascadeSettings::kAuto), "",
-       "shadow maps of the sun along the view; 1: one for the whole scene; auto: one, unless a mesh has less than 4 of "
-       "its "
-       "texels",
+       "shadow maps of the sun along the view; 1: one for the whole scene; auto: one, unless a mesh has fewer than "
+       "4 of its texels",
        "[Zhang2006]", rebuild, "shadow.transport=map", "", "shadows"},
       {"shadow.split", number(FRAME_FIELD(shadow.cascades.split), 0.0, 1.0), "",
        "how cascades divide the view's depth: 0 uniformly, 1 logarithmically", "[Zhang2006, section 3.2]", rebuild,
        "shadow.transport=map", "", "shadows"},
       {"shadow.lamps", number(FRAME_FIELD(lights.shadows), 0, LIGHTS_MAX_SHADOWS), "of a kind",
-       "spots, and omnidirectional lights, with shadow maps, at most: those that light the scene most; the others "
-       "shine "
-       "through what is before them",
+       "spots, and omnidirectional lights, with shadow maps, at most: those that light the scene most; the others are "
+       "not occluded",
        "", rebuild, "", "", "shadows"},
       {"shadow.spot-size", number(FRAME_FIELD(lights.spotSize), 1, 16384), "texels",
        "side of a spot light's shadow map", "", rebuild, "shadow.transport=map", "", "shadows"},
@@ -44,14 +42,14 @@ std::span<const Setting> sharedSettings() {
        "side of each face of an omnidirectional light's shadow map", "", rebuild, "shadow.transport=map", "",
        "shadows"},
       {"texture.anisotropy", number(FRAME_FIELD(textures.anisotropy), 1.0, 16.0), "",
-       "anisotropic filtering of what is seen, at most; 1 without mipmaps", "", rebuild, "", "", "textures"},
+       "anisotropic filtering of visible surfaces, at most; 1 without mipmaps", "", rebuild, "", "", "textures"},
       {"texture.mipmaps", boolean(FRAME_FIELD(textures.mipmaps)), "",
-       "textures in smaller versions with distance; off: they flicker", "[LPV2015]", rebuild, "", "", "textures"},
+       "smaller versions of textures at a distance; off: textures flicker", "[LPV2015]", rebuild, "", "", "textures"},
       {"picture.samples", number(FRAME_FIELD(pixelSamples), 1, 1024), "per pixel",
-       "frames of one view that are added up, each for another point of every pixel", "", rebuild, "",
+       "frames of one view that are averaged, each for another point of every pixel", "", rebuild, "",
        "16; where frames are timed 1", "textures"},
       {"picture.filter", choice(FRAME_FIELD(filter)), "",
-       "how light counts that falls beside a pixel's centre: box: the pixel's area; gaussian: standard deviation 1/2, "
+       "weight of light around a pixel's centre: box: the pixel's area; gaussian: standard deviation 1/2, "
        "to "
        "1.5 pixels; blackman-harris: to 1.5 pixels; centre: one point",
        "[Ernst2006]", rebuild, "", "", "all"},
