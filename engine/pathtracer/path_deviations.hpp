@@ -19,6 +19,7 @@ struct PathDeviations {
   bool rouletteAtSurfaces = false;
   bool unattenuatedShadowRays = false;
   bool unscaledRefraction = false;
+  bool operator==(const PathDeviations&) const = default;
 };
 
 struct PathSettings {

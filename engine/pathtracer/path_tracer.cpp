@@ -8,6 +8,8 @@
 #include "pathtracer/film.hpp"
 #include "rays/view_rays.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -23,7 +25,7 @@ namespace {
 constexpr GLuint kConstantsBinding = 0;  // GL_UNIFORM_BUFFER
 constexpr GLuint kStateBinding = 5, kMediaBinding = 6, kInteriorsBinding = 7, kGridsBinding = 0,
                  kDensitiesBinding = 1;  // GL_SHADER_STORAGE_BUFFER
-constexpr GLuint kClearancesUnit = 3;
+constexpr GLuint kClearancesUnit = 3, kCastersUnit = 5;
 constexpr int kGroupSide = 8;
 constexpr int kClearanceCells = 64;
 // llvmpipe leaves all loops of a shader after 65,535 iterations, counted together for all lanes of a vector (8, at most
@@ -37,7 +39,8 @@ struct StateHeader {
                 padding[2]{};
 };
 constexpr std::size_t kStateHeaderBytes = sizeof(StateHeader), kVec4Bytes = 16;
-constexpr std::size_t kPathWords = 6, kSpilledWords = 8, kSpilledInteriorWords = 17;  // STATE_WORDS of path.glsl
+constexpr std::size_t kPathWords = 6, kSpilledWords = 8, kSpilledInteriorWords = 17,
+                      kManifoldWords = 8;  // STATE_WORDS of path.glsl
 /// For the inspected pixel: room for the light contributions of a pass of kInspectedSamples.
 constexpr std::size_t kInspectedHead = 1 + PATH_INSPECTED_PLACES, kInspectedRecords = 32768,
                       kInspectedWords = kInspectedHead + kInspectedRecords * PATH_INSPECTED_RECORD;
@@ -67,6 +70,54 @@ bool areLampsOutside(const Scene& scene, const PackedBoundaries& boundaries) {
                      [&](const PointLight& light) { return isPlaceOutside(light.position); }) &&
          std::all_of(scene.spots.begin(), scene.spots.end(),
                      [&](const SpotLight& light) { return isPlaceOutside(light.position); });
+}
+
+constexpr int kMostCasters = 32;
+
+/// The surfaces that lamps are sought by way of (shaders/pathtracer/manifold.comp): mirrors and smooth boundaries that
+/// refract. A mesh each; those beyond kMostCasters share the last.
+struct Casters {
+  std::vector<glm::vec4> balls;  ///< around them, in the ray caster's space: centre, radius
+  std::vector<glm::uvec4> parts;  ///< their first triangle in the list, their number, bits of their area
+  std::vector<glm::uvec2> triangles;  ///< number in the scene, bits of the share of the area up to its end
+};
+
+Casters castersOf(const Scene& scene, const glm::dvec3& origin) {
+  std::vector<std::vector<const Mesh*>> groups;
+  for (const Mesh& mesh : scene.meshes) {
+    const Material& material = scene.materials[static_cast<std::size_t>(mesh.material)];
+    const bool isSmooth =
+        (material.bsdf == Bsdf::dielectric || material.bsdf == Bsdf::conductor) && material.roughness == 0.0f;
+    if (!isSmooth && material.bsdf != Bsdf::mirror) continue;
+    if (groups.size() < kMostCasters) groups.emplace_back();
+    groups.back().push_back(&mesh);
+  }
+  Casters casters;
+  for (const std::vector<const Mesh*>& group : groups) {
+    Bounds box;
+    double area = 0.0;
+    const std::size_t first = casters.triangles.size();
+    std::vector<double> ends;
+    for (const Mesh* mesh : group) {
+      box.add(mesh->bounds.min);
+      box.add(mesh->bounds.max);
+      for (std::uint32_t t = mesh->firstIndex / 3; t < (mesh->firstIndex + mesh->indexCount) / 3; ++t) {
+        const auto corner = [&](std::size_t k) {
+          return glm::dvec3(scene.vertices[scene.indices[3 * std::size_t{t} + k]].position);
+        };
+        area += 0.5 * glm::length(glm::cross(corner(1) - corner(0), corner(2) - corner(0)));
+        ends.push_back(area);
+        casters.triangles.emplace_back(t, 0u);
+      }
+    }
+    for (std::size_t k = 0; k < ends.size(); ++k)
+      casters.triangles[first + k].y = std::bit_cast<std::uint32_t>(static_cast<float>(ends[k] / area));
+    casters.balls.emplace_back(glm::vec3(0.5 * (box.min + box.max) - origin),
+                               static_cast<float>(0.5 * glm::length(box.extent())));
+    casters.parts.emplace_back(static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(ends.size()),
+                               std::bit_cast<std::uint32_t>(static_cast<float>(area)), 0u);
+  }
+  return casters;
 }
 
 /// Side of a tile whose lanes' state fits in a storage block.
@@ -107,6 +158,14 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
                  boundaries_.rankOfMaterial);
   scene_->fill(constants_);
   sceneHash_ = scene_->hash();
+  if (seeksByManifolds()) {
+    const Casters casters = castersOf(scene, scene_->origin());
+    casters_ = casters.balls;
+    casterParts_ = casters.parts;
+    if (!casters_.empty())
+      casterTriangles_ = gl::BufferTexture("path casters", gl::Format::rg32ui,
+                                           casters.triangles.size() * sizeof(glm::uvec2), casters.triangles.data());
+  }
   if (features_.denseMedia) addClearances(scene);
   if (features_.dielectrics || features_.nullBoundaries)
     interiors_ = storageOf("path interiors", boundaries_.interiors, capabilities);
@@ -146,6 +205,11 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
   tileSide_ = tileSideOn(capabilities, stateWords());
   allocateFilm();
   program_ = &programs.loadCompute("path tracing", "pathtracer/path.comp", kernelFlags());
+  if (!casters_.empty()) {
+    gl::ShaderFlags flags = kernelFlags();
+    flags.push_back({"MOST_CASTERS", kMostCasters});
+    manifoldProgram_ = &programs.loadCompute("specular manifolds", "pathtracer/manifold.comp", flags);
+  }
   setCamera(scene.cameras.empty() ? Camera{} : scene.cameras.front());
 }
 
@@ -178,6 +242,7 @@ gl::ShaderFlags PathTracer::flags() const {
                          {"DIELECTRICS", features_.dielectrics},
                          {"INTERIORS", hasInteriors()},
                          {"TOUCHING", hasInteriors() && touching_},
+                         {"MANIFOLDS", !casters_.empty()},
                          {"MEDIA", features_.media},
                          {"LAMPS_OUTSIDE", lampsOutside_},
                          {"WALKS", features_.denseMedia},
@@ -208,8 +273,9 @@ gl::ShaderFlags PathTracer::flags() const {
 }
 
 std::size_t PathTracer::stateWords() const {
-  if (scene_->rays().sharedStack() == 0) return kPathWords;
-  return hasInteriors() ? kSpilledInteriorWords : kSpilledWords;
+  const std::size_t manifold = casters_.empty() ? 0 : kManifoldWords;
+  if (scene_->rays().sharedStack() == 0) return kPathWords + manifold;
+  return (hasInteriors() ? kSpilledInteriorWords : kSpilledWords) + manifold;
 }
 
 gl::ShaderFlags PathTracer::kernelFlags() const {
@@ -417,23 +483,23 @@ bool PathTracer::submit(std::uint32_t samples, Passes passes) {
   return done_ < samples;
 }
 
-void PathTracer::dispatch(glm::ivec2 corner, glm::ivec2 size, std::uint32_t target) {
-  constants_.tile = glm::ivec4(corner, size);
-  constants_.sampleTarget = target;
-  constants_.iterations = iterations_.units();
-  constantsBuffer_.upload(0, sizeof constants_, &constants_);
-  const gl::ComputePass pass("path tracing", gl::Barrier::storage | gl::Barrier::image | gl::Barrier::textureFetch,
-                             gl::Barrier::image);
-  program_->use();
+// Only lamps that no ray finds are sought. Published forms have no such search.
+bool PathTracer::seeksByManifolds() const {
+  return features_.anyLight() && settings_.nextEvent && !settings_.diffuseOnly &&
+         settings_.deviations == PathDeviations{} && settings_.transport != Transport::oneBounceUnoccluded;
+}
+
+void PathTracer::bind(const gl::Program& program) {
+  program.use();
   scene_->bind();
   constantsBuffer_.bindUniform(kConstantsBinding);
   state_.bindStorage(kStateBinding);
   if (hasInteriors()) {
     interiors_.bindStorage(kInteriorsBinding);
-    program_->set("outerMedium", outerMedium_);
-    program_->set("dielectricRanks", boundaries_.dielectricRanks);
-    program_->set("cameraInside", cameraInside_);
-    program_->set("cameraIor", cameraIor_);
+    program.set("outerMedium", outerMedium_);
+    program.set("dielectricRanks", boundaries_.dielectricRanks);
+    program.set("cameraInside", cameraInside_);
+    program.set("cameraIor", cameraIor_);
   }
   if (features_.denseMedia) clearances_.bind(kClearancesUnit);
   if (features_.media) media_.bindStorage(kMediaBinding);
@@ -441,9 +507,33 @@ void PathTracer::dispatch(glm::ivec2 corner, glm::ivec2 size, std::uint32_t targ
     grids_.bindStorage(kGridsBinding);
     densities_.bindStorage(kDensitiesBinding);
   }
-  filmMean_.bindImage(0, gl::Access::readWrite);
-  filmM2_.bindImage(1, gl::Access::readWrite);
-  filmRest_.bindImage(2, gl::Access::readWrite);
+}
+
+void PathTracer::dispatch(glm::ivec2 corner, glm::ivec2 size, std::uint32_t target) {
+  constants_.tile = glm::ivec4(corner, size);
+  constants_.sampleTarget = target;
+  constants_.iterations = iterations_.units();
+  constantsBuffer_.upload(0, sizeof constants_, &constants_);
+  {
+    const gl::ComputePass pass("path tracing", gl::Barrier::storage | gl::Barrier::image | gl::Barrier::textureFetch,
+                               gl::Barrier::image);
+    bind(*program_);
+    filmMean_.bindImage(0, gl::Access::readWrite);
+    filmM2_.bindImage(1, gl::Access::readWrite);
+    filmRest_.bindImage(2, gl::Access::readWrite);
+    pass.dispatch(glm::ivec3(size, 1), glm::ivec3(kGroupSide, kGroupSide, 1));
+  }
+  if (casters_.empty()) return;
+  // Light that paths have asked for, through refracting boundaries.
+  const gl::ComputePass pass("specular manifolds", gl::Barrier::storage);
+  bind(*manifoldProgram_);
+  manifoldProgram_->set("casterCount", static_cast<int>(casters_.size()));
+  for (std::size_t i = 0; i < casters_.size(); ++i) {
+    manifoldProgram_->set(fmt::format("casters[{}]", i), casters_[i]);
+    manifoldProgram_->set(fmt::format("casterParts[{}]", i), casterParts_[i]);
+  }
+  casterTriangles_.bind(kCastersUnit);
+  filmMean_.bindImage(0, gl::Access::read);
   pass.dispatch(glm::ivec3(size, 1), glm::ivec3(kGroupSide, kGroupSide, 1));
 }
 
@@ -500,7 +590,7 @@ PathTracer::Statistics PathTracer::statistics() const {
 std::size_t PathTracer::gpuBytes() const {
   std::size_t bytes = scene_->gpuBytes() + state_.bytes() + counters_.bytes() + constantsBuffer_.bytes() +
                       media_.bytes() + interiors_.bytes() + grids_.bytes() + densities_.bytes() + clearances_.bytes() +
-                      filmMean_.bytes() + filmM2_.bytes() + filmRest_.bytes();
+                      casterTriangles_.bytes() + filmMean_.bytes() + filmM2_.bytes() + filmRest_.bytes();
   for (const gl::Texture& texture : kept_) bytes += texture.bytes();
   return bytes;
 }

@@ -146,6 +146,9 @@ class PathTracer {
   enum class Passes { doubling, whole };
   bool submit(std::uint32_t samples, Passes passes);
   void dispatch(glm::ivec2 corner, glm::ivec2 size, std::uint32_t target);
+  void bind(const gl::Program& program);
+  /// Whether lamps are sought by way of refracting boundaries and mirrors.
+  bool seeksByManifolds() const;
   struct Tile {
     glm::ivec2 corner, size;
   };
@@ -157,7 +160,10 @@ class PathTracer {
   SceneFeatures features_;
   std::optional<PathScene> scene_;  ///< always set after construction
   shared::PathConstants constants_{};
-  const gl::Program* program_ = nullptr;
+  const gl::Program *program_ = nullptr, *manifoldProgram_ = nullptr;
+  /// Mirrors and smooth refracting bodies (path_tracer.cpp); empty: no lamp is sought by way of them.
+  std::vector<glm::vec4> casters_;
+  std::vector<glm::uvec4> casterParts_;
   PackedBoundaries boundaries_;
   bool touching_ = false;  ///< a boundary may coincide with or cross another surface
   int outerMedium_ = -1;
@@ -166,7 +172,7 @@ class PathTracer {
   std::string cameraWarning_;  ///< to be reported before the first path
   bool lampsOutside_ = false;  ///< none lies within a dielectric
   gl::Buffer media_, interiors_, grids_, densities_;
-  gl::BufferTexture clearances_;
+  gl::BufferTexture clearances_, casterTriangles_;
   double leakedPaths_ = 0.0, wrongCrossings_ = 0.0, iterationsTaken_ = 0.0, collisions_ = 0.0;
   gl::Buffer state_, constantsBuffer_;
   gl::Staging counters_{"path counters"};

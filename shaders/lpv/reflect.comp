@@ -3,11 +3,10 @@
 //
 // Light that crosses one of a cell's six faces is held back there by the surfels' blocking potential B
 // (lpv/kernel.glsl). The blocked part returns to the cell it came from, times the albedo, as a cosine lobe about the
-// surfels' mean normal. Every face sees the sum of all wavefronts, T - S; since max(0, sum) <= sum of max(0, .), no more is
-// held back than in the steps themselves.
+// surfels' mean normal. Every face sees the sum of all wavefronts, T - S; since max(0, sum) <= sum of max(0, .), no
+// more is held back than in the steps themselves.
 // Bounded: clamping negative intensities lets a cosine lobe gain a factor 1.138208 in its first step, never more
 // (engine/lpv/README.md). That factor is divided out, so a source of flux S returns at most rho S, and the sum of all
-// bounces stays below S / (1 - rho).
 // bounces stays below S / (1 - rho).
 #include "cascades/block.glsl"
 #include "lpv/kernel.glsl"

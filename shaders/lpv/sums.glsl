@@ -1,6 +1,6 @@
-// The sums of wavefronts, in 32 bits. FROM_BUFFER: from the buffers of the compute steps, else from the textures that the
-// layered pass blends into. They cover all steps, or, with joined cascades, those before and those after the hand-over.
-// Needs cascades/block.glsl.
+// The sums of wavefronts, in 32 bits. FROM_BUFFER: from the buffers of the compute steps, else from the textures that
+// the layered pass blends into. They cover all steps, or, with joined cascades, those before and those after the
+// hand-over. Needs cascades/block.glsl.
 #if FROM_BUFFER
 layout(binding = 0) uniform samplerBuffer nearSums;  // cell by cell, all red, then green, then blue
 layout(binding = 3) uniform samplerBuffer farSums;

@@ -30,6 +30,25 @@ bool isSmooth(Bsdf bsdf) {
 #endif
 }
 
+// The surface that a path has met; iorBeyond: refractive index behind it.
+Bsdf bsdfOf(Path path, Surface surface, PathMaterial material, float iorBeyond) {
+  Bsdf bsdf = Bsdf(material.kind, material.specular, material.roughness, 1.0, surface.normal
+#if COATS
+                   , Coat(vec3(0.0), 1.0)
+#endif
+  );
+  if (isOpaque(bsdf)) bsdf.albedo = DIFFUSE_ONLY != 0 ? wholeAlbedoAt(surface) : albedoAt(surface);
+  // For a path that sees the back of the shading normal, mirrors and glass use the geometric normal.
+  else if (!(dot(surface.normal, path.direction) < 0.0)) bsdf.normal = surface.geometricNormal;
+#if COATS
+  if (bsdf.kind == PATH_COATED) bsdf.coat = coatAt(surface);
+#endif
+#if DIELECTRICS
+  if (bsdf.kind == PATH_DIELECTRIC) bsdf.eta = path.ior / iorBeyond;
+#endif
+  return bsdf;
+}
+
 #if COATS
 // Probability with which scatter() samples the coat rather than the base: by what they reflect. 0 where the shading
 // normal faces away from the path.

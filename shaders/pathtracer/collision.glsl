@@ -24,7 +24,7 @@ bool leaked(Path path) {
 #if ROULETTE_AT_SURFACES
 // Roulette once per iteration of the published loop [VPT2024, algorithm 3]. The text does not say at which iteration it
 // starts (rrStart), so it is played in all. False: the path ends.
-bool survivesTurn(inout Path path, float u) {
+bool survivesIteration(inout Path path, float u) {
   float largest = max(path.throughput.r, max(path.throughput.g, path.throughput.b));
 #if ROULETTE_WITHOUT_DIVISION
   return u < min(largest, 0.95);
@@ -107,8 +107,10 @@ float headOf(vec3 inward, vec3 direction) {
   return shift / (abs(cosine) > 1e-4 ? cosine : cosine < 0.0 ? -1e-4 : 1e-4);
 }
 
-// At a collision: light from a lamp if `queuesLight`, then a new direction from the phase function.
-int scatterInMedium(inout Path path, MediumRecord medium, vec3 inward, PathNumbers numbers, bool queuesLight) {
+// At a collision: light from a lamp if `queuesLight`, then a new direction from the phase function. seeks: with which
+// probability lamps are sought by way of boundaries and mirrors.
+int scatterInMedium(inout Path path, MediumRecord medium, vec3 inward, PathNumbers numbers, bool queuesLight,
+                    float seeks) {
   path.skip = kNoHit;
   path.head = 0.0;
   path.chain = 0u;
@@ -143,6 +145,9 @@ int scatterInMedium(inout Path path, MediumRecord medium, vec3 inward, PathNumbe
 #endif
 #if !SCATTERED_LIGHT && !NEXT_EVENT
   return kEnded;
+#endif
+#if MANIFOLDS
+  requestManifold(path, kNoHit, vec2(0.0), seeks, numbers);
 #endif
   uvec2 choice = randomWordPair(numbers, path.event, kPurposeMediumChoice);
   vec3 weight, before = path.direction, q = channelProbabilities(path.throughput);

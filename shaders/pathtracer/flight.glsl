@@ -91,7 +91,7 @@ int trackDensity(inout Path path, MediumRecord medium, float distance, PathNumbe
   }
   vec3 throughput = path.throughput;
   forgetAddresses();
-  take(path);
+  reload(path);
   path.throughput = throughput;
   bool arrives = !collided && tries < kMostTracked;
   if (!arrives) path.origin += (t - head) * path.direction;
@@ -164,6 +164,17 @@ void weighFlight(inout Path path, MediumRecord medium, vec3 q, float distance, b
 #if WALKS
 // distances from cell centres to the scene's nearest triangle
 layout(binding = 3) uniform samplerBuffer clearances;
+
+// A distance within which no triangle is near a position.
+float clearanceAt(InteriorRecord interior, vec3 position) {
+  ivec3 cell = clampedInt((position - interior.min) / interior.cell, ivec3(0), interior.size.xyz - 1);
+  float radius =
+      texelFetch(clearances, interior.clearance + cell.x + interior.size.x * (cell.y + interior.size.y * cell.z)).x;
+  return radius - length(position - interior.min - (vec3(cell) + 0.5) * interior.cell);
+}
+#endif
+
+#if WALKS && !MANIFOLDS
 const uint kWalkSteps = 64u;
 
 // Moves from collision to collision as long as `flight`, the last one drawn, ends before it could meet any triangle; no
@@ -174,26 +185,36 @@ bool walk(inout Path path, MediumRecord medium, inout float flight, PathNumbers 
   if (rank < 0 || (NEXT_EVENT != 0 && lampsReach(path))) return true;
   InteriorRecord interior = interiors[rank];
   if (interior.clearance < 0) return true;
-  ivec3 last = interior.size.xyz - 1;
   float margin = 2.0 * flightMargin();
   if (flight < 0.0) return true;
   for (uint step = 0u; step < kWalkSteps; ++step) {
-    ivec3 cell = clampedInt((path.origin - interior.min) / interior.cell, ivec3(0), last);
-    float radius =
-        texelFetch(clearances, interior.clearance + cell.x + interior.size.x * (cell.y + interior.size.y * cell.z)).x;
-    if (!(flight + margin < radius - length(path.origin - interior.min - (vec3(cell) + 0.5) * interior.cell)))
-      return true;
+    if (!(flight + margin < clearanceAt(interior, path.origin))) return true;
     ++loopIterations;
     numbers.pixel += hiddenZero();
     numbers.sampleIndex += hiddenZero();
     weighFlight(path, medium, channelProbabilities(path.throughput), path.head + flight, false, numbers);
     path.origin += flight * path.direction;
-    if (scatterInMedium(path, medium, vec3(0.0), numbers, false) != kScattered) return false;
+    if (scatterInMedium(path, medium, vec3(0.0), numbers, false, 0.0) != kScattered) return false;
     flight = beginFlight(path, medium, numbers);
   }
   return true;
 }
 #endif
+
+// The probability with which lamps are sought by manifold.comp from a collision: deep inside of a dense body hardly any
+// of their light is left, and the search costs far more than a collision. Optical depths up to kShallow are certain.
+float seekingProbability(Path path, MediumRecord medium) {
+#if MANIFOLDS && WALKS
+  const float kShallow = 2.0;
+  int rank = topRank(path.inside);
+  if (rank >= 0 && interiors[rank].clearance >= 0) {
+    InteriorRecord interior = interiors[rank];
+    float least = max(clearanceAt(interior, path.origin), 0.0);
+    return min(exp(kShallow - least * min(medium.extinction.r, min(medium.extinction.g, medium.extinction.b))), 1.0);
+  }
+#endif
+  return 1.0;
+}
 
 bool arrivesAt(Hit hit, float flight) { return hit.triangle != kNoHit ? hit.t <= flight : flight > 0.5 * kFar; }
 
@@ -239,7 +260,8 @@ int crossMedium(inout Path path, int index, float flight, Hit hit, PathNumbers n
 #if FIXED_EPSILON
   inward = vec3(0.0);  // published rays have no such correction
 #endif
-  int became = scatterInMedium(path, mediumAt(index), inward, numbers, lampsReach(path));
+  int became = scatterInMedium(path, mediumAt(index), inward, numbers, lampsReach(path),
+                                seekingProbability(path, mediumAt(index)));
   path.head = headOf(inward, path.direction);
   return became;
 }

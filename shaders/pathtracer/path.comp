@@ -38,6 +38,9 @@ uint collisionCount = 0u;  // of this lane, in this submission
 #if INTERIORS
 #include "pathtracer/crossing.glsl"
 #endif
+#if MANIFOLDS
+#include "pathtracer/manifold_request.glsl"
+#endif
 #if MEDIA
 #include "pathtracer/flight.glsl"
 #endif
@@ -131,25 +134,6 @@ void addEmission(inout Path path, Hit hit, Surface surface, PathNumbers numbers)
 }
 #endif
 
-// iorBeyond: refractive index behind the surface.
-Bsdf bsdfOf(Path path, Surface surface, PathMaterial material, float iorBeyond) {
-  Bsdf bsdf = Bsdf(material.kind, material.specular, material.roughness, 1.0, surface.normal
-#if COATS
-                   , Coat(vec3(0.0), 1.0)
-#endif
-  );
-  if (isOpaque(bsdf)) bsdf.albedo = DIFFUSE_ONLY != 0 ? wholeAlbedoAt(surface) : albedoAt(surface);
-  // For a path that sees the back of the shading normal, mirrors and glass use the geometric normal.
-  else if (!(dot(surface.normal, path.direction) < 0.0)) bsdf.normal = surface.geometricNormal;
-#if COATS
-  if (bsdf.kind == PATH_COATED) bsdf.coat = coatAt(surface);
-#endif
-#if DIELECTRICS
-  if (bsdf.kind == PATH_DIELECTRIC) bsdf.eta = path.ior / iorBeyond;
-#endif
-  return bsdf;
-}
-
 // Russian roulette [Arvo1990]. While the throughput is 1 or more the survival probability stays high but below 1, so
 // that every path ends. Total internal reflection may trap paths in glass forever with almost no light; after many
 // smooth scatterings in a row the probability drops. False: the path ends.
@@ -157,7 +141,7 @@ bool survivesSurface(inout Path path, float random) {
   float most = path.chain > 32u ? 0.99 : path.event < 1024u ? 1.0 : 0.999;
   float largest = max(path.throughput.x, max(path.throughput.y, path.throughput.z));
 #if MEDIA && ROULETTE_AT_SURFACES
-  return mediumInside(path.inside) >= 0 || survivesTurn(path, random);
+  return mediumInside(path.inside) >= 0 || survivesIteration(path, random);
 #elif ROULETTE_WITHOUT_DIVISION
   return random < min(largest, min(most, 0.95));  // [VPT2024, algorithm 3]
 #else
@@ -202,7 +186,7 @@ bool handleHit(inout Path path, Hit hit, PathNumbers numbers) {
 #if MEDIA && ROULETTE_AT_SURFACES
   // An iteration of [VPT2024, algorithm 3] that entered a medium ends here, at the medium's far boundary.
   if (mediumInside(path.inside) >= 0 &&
-      !survivesTurn(path, unitFloat(randomWordPair(numbers, path.event, kPurposeMediumChoice).x)))
+      !survivesIteration(path, unitFloat(randomWordPair(numbers, path.event, kPurposeMediumChoice).x)))
     return false;
 #endif
 #if EMISSION
@@ -230,7 +214,10 @@ bool handleHit(inout Path path, Hit hit, PathNumbers numbers) {
   if (!isSmooth(bsdf) && counts(path.scatterings))
     addNextEvent(path, surface, hit.triangle, bsdf, iorBeyond, beyond, numbers);
   forgetAddresses();
-  take(path);
+  reload(path);
+#endif
+#if MANIFOLDS
+  if (!isSmooth(bsdf)) requestManifold(path, hit.triangle, hit.barycentrics, 1.0, numbers);
 #endif
 #if UNOCCLUDED
   if (path.scatterings == 2u && isOpaque(bsdf)) {  // surfaces do not block: continue to those behind
@@ -355,7 +342,7 @@ bool setUpRay(inout Path path, PathNumbers numbers, out Ray ray, out uint skip) 
   if (job == kPathRay) {
     if (loopIterations >= tracer.iterations) return false;
     loopIterations += 4u;
-    take(path);
+    reload(path);
     ray = Ray(path.origin, 0.0, path.direction, 3e38);
     skip = path.skip;
 #if INSPECTED
@@ -365,7 +352,7 @@ bool setUpRay(inout Path path, PathNumbers numbers, out Ray ray, out uint skip) 
     // In a homogeneous medium the flight length is drawn first: short rays are cheap to trace.
     int medium = mediumInside(path.inside);
     flight = medium >= 0 ? beginFlight(path, mediumOf(medium), numbers) : 3e38;
-#if WALKS
+#if WALKS && !MANIFOLDS
     if (medium >= 0) {
       if (!walk(path, mediumOf(medium), flight, numbers)) stage = kEnds;
       spill(path);
@@ -395,7 +382,7 @@ bool setUpRay(inout Path path, PathNumbers numbers, out Ray ray, out uint skip) 
       reloadHit(1u, crossed);
       surface = surfaceAt(crossed.triangle, crossed.barycentrics, shadow.direction);
     } else {
-      take(path);
+      reload(path);
       reloadHit(0u, arrival);
       surface = surfaceAt(arrival.triangle, arrival.barycentrics, path.direction);
     }
@@ -436,7 +423,7 @@ void useHit(inout Path path, Ray ray, Hit hit, PathNumbers numbers) {
       job = kPathRay;
       stage = kHits;
       if (hit.triangle != kNoHit) {  // a surface immediately behind: the path has hit it from its current position
-        take(path);
+        reload(path);
         reloadHit(0u, arrival);
         coincident.beyond = coincident.before = path.inside;
         arrival.triangle = hit.triangle;
@@ -477,7 +464,7 @@ void useHit(inout Path path, Ray ray, Hit hit, PathNumbers numbers) {
     reloadShadow();
     addRadiance(path, shadow.light);
 #if INSPECTED
-    take(path);
+    reload(path);
     noteShadow(path, after == kFlown, numbers);
 #endif
     shadow.waits = false;
@@ -491,7 +478,7 @@ void useHit(inout Path path, Ray ray, Hit hit, PathNumbers numbers) {
 void fly(inout Path path, PathNumbers numbers) {
 #if MEDIA
   if (stage == kFlies) {
-    take(path);
+    reload(path);
     int medium = mediumInside(path.inside);
     stage = medium < 0 ? kArrives : kFlown;
 #if NEXT_EVENT && (POINTS || SPOTS) && !DISTANCE_WITHOUT_PDF && !BOOSTED_INTERACTION
@@ -504,7 +491,7 @@ void fly(inout Path path, PathNumbers numbers) {
 #endif
   }
   if (stage == kFlown) {
-    take(path);
+    reload(path);
     reloadHit(0u, arrival);
     int became = crossMedium(path, mediumInside(path.inside), flight, arrival, numbers);
     spill(path);
@@ -523,7 +510,7 @@ void arrive(inout Path path, PathNumbers numbers) {
 #if TOUCHING
     // The other boundaries crossed by the step to the far side: a face that coincides with this one belongs to the same
     // interface.
-    take(path);
+    reload(path);
     reloadHit(0u, arrival);
     coincident = Coincident(path.inside, path.inside, 0.0, arrival.triangle, 0u, 0.0);
     int rank = arrival.triangle != kNoHit ? rankOf(arrival.triangle) : -1;
@@ -536,7 +523,7 @@ void arrive(inout Path path, PathNumbers numbers) {
 #endif
   }
   if (stage == kHits) {
-    take(path);
+    reload(path);
     reloadHit(0u, arrival);
     stage = handleHit(path, arrival, numbers) ? kContinue : kEnds;
     spill(path);
@@ -603,16 +590,26 @@ void main() {
   uint where = uint(pixel.x) | uint(pixel.y) << 16u;
   home = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u * uint(STATE_WORDS) + gl_LocalInvocationIndex;
   Path path;
+  bool inFlight = true;
   if (isWaiting()) restorePath(path);
   else beginPath(path, pixel, numbers);
   shadow.waits = false;
+#if MANIFOLDS
+  if (manifoldStatus() != kManifoldDone) {  // not yet done
+    atomicAdd(unfinished, 1u);
+    return;
+  }
+  if (hasEnded()) inFlight = nextSample(path, film, where, numbers);
+#endif
 
+#if MANIFOLDS
+  bool waits = false;
+#endif
   // One traversal serves all rays, since drivers inline every function: each further call site costs registers and
   // minutes of compiling.
-  bool inFlight = true;
   // ends: each ray of a path adds 4 iterations, up to tracer.iterations; between two of them lie at most 256 boundaries
   // that a shadow ray crosses, with kMostCoincident short rays each
-  for (;;) {
+  while (inFlight) {
     forget(where, numbers);
     stage = kTraces;
     Ray ray;
@@ -637,8 +634,14 @@ void main() {
     useHit(path, ray, hit, numbers);
     fly(path, numbers);
     arrive(path, numbers);
+#if MANIFOLDS
+    // The path waits for manifold.comp.
+    if ((stage == kContinue || stage == kEnds) && manifoldStatus() != kManifoldDone) {
+      waits = true;
+      break;
+    }
+#endif
     inFlight = stage != kEnds || nextSample(path, film, where, numbers);
-    if (!inFlight) break;
   }
 
   // Store the counters, the film, and the path in flight.
@@ -654,6 +657,9 @@ void main() {
     atomicAdd(unfinished, 1u);
 #if !SPILLED
     savePath(path);
+#endif
+#if MANIFOLDS
+    if (waits && stage == kEnds) setEnded();
 #endif
   } else {
     state[wordAt(4u)].x = 0u;

@@ -47,7 +47,8 @@ const float kRouletteBelow = 0.25;
 const float kRouletteBelow = 1.0;
 #endif
 
-const uint kInFlight = 0x80000000u;  // in the saved event: a path is waiting to be continued
+// In the saved event: a path is waiting to be continued; it has ended, and waits for manifold.comp.
+const uint kInFlight = 0x80000000u, kPathEnded = 0x40000000u, kEventBits = 0x3fffffffu;
 
 bool counts(uint scatterings) { return scatterings >= tracer.minScatterings && scatterings <= tracer.maxScatterings; }
 
@@ -122,12 +123,14 @@ void forgetAddresses() { home += hiddenZero(); }
 
 // Whether a path waits there for its next ray.
 bool isWaiting() { return (state[wordAt(4u)].x & kInFlight) != 0u; }
+bool hasEnded() { return (state[wordAt(4u)].x & kPathEnded) != 0u; }
+void setEnded() { state[wordAt(4u)].x |= kPathEnded; }
 
 void restorePath(out Path path) {
   uvec4 w0 = state[wordAt(0u)], w1 = state[wordAt(1u)], w2 = state[wordAt(2u)], w3 = state[wordAt(3u)],
         w4 = state[wordAt(4u)];
   path = Path(uintBitsToFloat(w0.xyz), w0.w, uintBitsToFloat(w1.xyz), uintBitsToFloat(w1.w), uintBitsToFloat(w2.xyz),
-              uintBitsToFloat(w2.w), uintBitsToFloat(w3.xyz), w3.w & 0xffffffu, w4.x & ~kInFlight,
+              uintBitsToFloat(w2.w), uintBitsToFloat(w3.xyz), w3.w & 0xffffffu, w4.x & kEventBits,
               uintBitsToFloat(w4.y), w3.w >> 24u
 #if INTERIORS
               ,
@@ -160,7 +163,7 @@ void savePath(Path path) {
 }
 
 #if SPILLED
-void take(out Path path) { restorePath(path); }
+void reload(out Path path) { restorePath(path); }
 void spill(Path path) { spillPath(path); }
 #if INTERIORS
 void reloadHit(uint which, out Hit hit) {
@@ -175,7 +178,7 @@ vec3 radianceOf(Path path) { return spilledRadiance(); }
 void startRadiance(Path path) { spillRadiance(path.radiance); }
 void addRadiance(Path path, vec3 light) { spillRadiance(spilledRadiance() + light); }
 #else
-void take(Path path) {}
+void reload(Path path) {}
 void spill(Path path) {}
 vec3 radianceOf(Path path) { return path.radiance; }
 void startRadiance(Path path) {}
