@@ -76,10 +76,10 @@ HemicubeView::HemicubeView(const gl::Context& context, gl::ProgramLibrary& progr
       }
   picture_ = gl::Texture("hemicube", gl::Format::rgba32f, {width, 2 * n});
   picture_.upload(gl::Texels::rgbaFloat, texels.data());
-  lines_ = {fmt::format("hemicube of patch {}, {} pixels a side, by {}", patch, n, nameOf(hemicube.visibility)),
-            "left: patches by their exitance; right: weights of pixels",
-            fmt::format("white {:.2e}; fronts {:.2f} %, backs (purple) {:.2f} %, nothing {:.2f} %", most, 100.0 * seen_,
-                        100.0 * backs, 100.0 * open)};
+  lines_ = {
+      fmt::format("hemicube of patch {}, {} pixels a side, by {}", patch, n, nameOf(hemicube.visibility)),
+      "left: patches by their exitance, backs purple", fmt::format("right: weights of pixels, white {:.2e}", most),
+      fmt::format("fronts {:.2f} %, backs {:.2f} %, nothing {:.2f} %", 100.0 * seen_, 100.0 * backs, 100.0 * open)};
 }
 
 std::optional<std::uint32_t> patchAt(const RadiosityMesh& mesh, const Camera& camera, glm::ivec2 pixel,

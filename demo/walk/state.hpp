@@ -28,6 +28,15 @@ namespace lucerna::demo {
 enum class Shows { technique, reference, picture };
 constexpr std::array<std::string_view, 3> kShowsNames{"a technique", "the reference", "a stored picture"};
 
+/// Lights of a scene, as far as the panel changes them.
+struct LightState {
+  std::optional<DirectionalLight> sun;
+  std::vector<SpotLight> spots;
+  std::vector<PointLight> points;
+  glm::vec3 sky{0.0f};  ///< factor of the environment
+  float emission = 1.0f;  ///< factor of all emissive materials
+};
+
 /// A or B.
 struct SideState {
   PictureOptions options;  ///< requested
@@ -38,6 +47,7 @@ struct SideState {
   std::unique_ptr<Renderer> renderer;
   PictureOptions built;
   std::string builtAs, failedAs;  ///< textOf() of options, with the scene's version
+  LightState lights;  ///< of the renderer
   bool isBehind = false;  ///< the renderer missed a change of the scene that it could not follow
   std::string failure;  ///< why the options could not be applied; empty: they could
   double buildSeconds = 0.0;
@@ -61,15 +71,6 @@ struct PathState {
 struct TimeState {
   bool held = false, loops = true;
   double seconds = 0.0, speed = 1.0;
-};
-
-/// Lights of a scene, as far as the panel changes them.
-struct LightState {
-  std::optional<DirectionalLight> sun;
-  std::vector<SpotLight> spots;
-  std::vector<PointLight> points;
-  glm::vec3 sky{0.0f};  ///< factor of the environment
-  float emission = 1.0f;  ///< factor of all emissive materials
 };
 
 /// What undo and redo step through.

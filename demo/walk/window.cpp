@@ -338,7 +338,10 @@ void WalkWindow::follow(const SceneChange& change) {
     // One of other options follows too: it is shown until the one for these is made.
     side.isBehind =
         side.isBehind || !side.renderer || !side.renderer->follow(context_, programs_, *state_.scene, change);
-    if (!side.isBehind) side.builtAs = wantedOf(side.built);
+    if (!side.isBehind) {
+      side.builtAs = wantedOf(side.built);
+      side.lights = lightsOf(state_);
+    }
     side.settled = false;
   }
   changed();
@@ -410,6 +413,7 @@ void WalkWindow::loadWantedScene() {
     a.renderer = std::move(renderer);
     a.built = shown;
     a.builtAs = wantedOf(a.built);
+    a.lights = lightsOf(state_);
     a.isBehind = false;
     state_.sceneText = file.string();
     if (host_.kind() == HostKind::window && !player_) rememberFile(file);
@@ -468,6 +472,7 @@ void WalkWindow::make(SideState& side) {
           side.built = side.options;
           side.renderer = preview(*state_.scene, side.built);
           side.builtAs = wantedOf(side.built);
+          side.lights = lightsOf(state_);
           side.isBehind = false;
         }
         made_ = &side;
@@ -479,6 +484,7 @@ void WalkWindow::make(SideState& side) {
     lastBreath_ = {};  // a driver may compile its programs only now
     breathe("drawing the first picture by " + side.options.technique);
     side.renderer = std::move(renderer);
+    side.lights = lightsOf(state_);
     state_.hemicube.reset();
     side.isBehind = false;
     for (const std::string& warning : side.renderer->warnings()) state_.say(warning);
@@ -506,19 +512,22 @@ void WalkWindow::make(SideState& side) {
       stop_ = true;
       return;
     }
-    side.options = side.built;
-    if (!side.renderer) side.failedAs = wanted;
-    if (changeOf(lastEdit_.lights, lightsOf(state_)).any() && !state_.scene->motion) {
-      // The renderer that stays is of the lights before; the other side's, if it is of these, is not.
-      setLights(state_, lastEdit_.lights);
-      shownLights_ = lastEdit_.lights;
-      for (SideState& each : state_.sides) {
-        each.isBehind = &each != &side;
-        each.builtAs = each.isBehind ? "" : wantedOf(each.built);
-      }
-    }
+    takeBack(side);
+    if (!side.renderer || side.builtAs != wantedOf(side.options)) side.failedAs = wantedOf(side.options);
     state_.say("stopped; settings and light as before");
   }
+}
+
+/// Settings and lights become those of the side's renderer again; the other side follows.
+void WalkWindow::takeBack(SideState& side) {
+  side.options = side.built;
+  const SceneChange change = changeOf(lightsOf(state_), side.lights);
+  if (!side.renderer || !change.any() || state_.scene->motion) return;
+  setLights(state_, side.lights);
+  shownLights_ = side.lights;
+  follow(change);
+  side.isBehind = false;
+  side.builtAs = wantedOf(side.built);
 }
 
 /// Whether frames go on while a technique is solved. What is measured or played is the same on every machine.
@@ -896,7 +905,7 @@ bool WalkWindow::drawBetween() {
   const auto start = Clock::now();
   if (seconds > kLongGap) logVerbose("{:.2f} s without a frame before: {}", seconds, state_.solving.text());
   drawsBetween_ = true;
-  const auto end = [this](bool goesOn) {
+  const auto end = [this, start](bool goesOn) {
     drawsBetween_ = false;
     lastBreath_ = Clock::now();
     frameBetween_ = secondsSince(start);
@@ -970,6 +979,7 @@ void WalkWindow::run() {
       ++frames_;
       continue;
     }
+    // Scene, light and renderers.
     resizeTo(window);
     loadWantedScene();
     moveScene(dt);
@@ -979,6 +989,7 @@ void WalkWindow::run() {
     if (relit) followSeconds_ = secondsSince(beforeLight);
     noteEdits();
     if (stop_) break;
+    // The picture.
     moveCamera(dt);
     recorder_.beginCapture(frames_ == options_.capture);
     draw();

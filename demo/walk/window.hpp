@@ -49,6 +49,7 @@ class WalkWindow {
   void makeReady();
   std::string wantedOf(const PictureOptions& options) const;  ///< of builtAs, were it up to date
   void make(SideState& side);
+  void takeBack(SideState& side);
   bool drawsWhileSolving() const;
   std::unique_ptr<Renderer> preview(const Scene& scene, PictureOptions& options);
   bool isWanted() const;

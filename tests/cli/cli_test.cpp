@@ -210,6 +210,25 @@ TEST_F(CommandLine, DeviationsAreReported) {
                 {"lpv.truncate=maybe", "=on or"}, "y.pfm");
 }
 
+// Beside a box the floor goes over into the sky without a step, whether the sky lights the floor or not.
+TEST_F(CommandLine, TheStudiosFloorFadesIntoItsSky) {
+  std::ofstream(path("box.obj")) << "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nv -1 2 -1\nv 1 2 -1\nv 1 2 1\nv -1 2 1\n"
+                                    "f 1 2 3 4\nf 5 8 7 6\nf 1 5 6 2\nf 4 3 7 8\nf 1 4 8 5\nf 2 6 7 3\n";
+  for (const std::string technique : {"direct", "lpv", "irradiance-cache"}) {
+    const RunResult result = RUN_LUCERNA("render " + path("box.obj") + " --technique " + technique +
+                                         " --size 96x54 --pixel-samples 1 -o " + path("box.pfm"));
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    const lucerna::Image picture = lucerna::readImage(path("box.pfm"));
+    for (const int column : {1, 94})
+      for (int row = 0; row + 1 < picture.height; ++row) {
+        const auto at = static_cast<std::size_t>(row * picture.width + column);
+        const float upper = picture.pixels[at].y,
+                    lower = picture.pixels[at + static_cast<std::size_t>(picture.width)].y;
+        EXPECT_NEAR(upper / lower, 1.0f, technique == "lpv" ? 0.06f : 0.02f) << technique << " row " << row;
+      }
+  }
+}
+
 TEST_F(CommandLine, WalkWritesPicturesAndStageTimes) {
   const RunResult result = RUN_LUCERNA("walk " + scene() + " --keys " + path("path.txt") +
                                        " --technique lpv --set frame.reuse=off --record " + path("out") +

@@ -244,20 +244,18 @@ TEST_F(RadiositySolutions, AHemicubesPixelsShowTheFirstPatchOnTheirRays) {
   const std::uint32_t patch = static_cast<std::uint32_t>(patches.size()) / 2;
   const HemicubePixels cube = hemicubeOf(context(), library(), scene, s, settings, patch);
   ASSERT_EQ(cube.seen.size(), 3u * 16 * 16);
-  const auto firstOn = [&](const glm::dvec3& direction) -> std::uint32_t {
-    std::uint32_t first = 0;
+  const auto distanceTo = [&](std::uint32_t p, const glm::dvec3& direction) {
+    const auto c = s.mesh.corners(patches[p]);
+    const glm::dmat3 m(c[1] - c[0], c[2] - c[0], -direction);
+    if (p == patch || std::abs(glm::determinant(m)) < 1e-12) return 1e300;
+    const glm::dvec3 x = glm::inverse(m) * (patches[patch].centroid - c[0]);
+    return x.x < 0.0 || x.y < 0.0 || x.x + x.y > 1.0 || x.z < 1e-6 ? 1e300 : x.z;
+  };
+  // A sheet's two patches are in one place.
+  const auto isFirst = [&](std::uint32_t seen, const glm::dvec3& direction) {
     double nearest = 1e300;
-    for (std::uint32_t p = 0; p < patches.size(); ++p) {
-      if (p == patch) continue;
-      const auto c = s.mesh.corners(patches[p]);
-      const glm::dmat3 m(c[1] - c[0], c[2] - c[0], -direction);
-      if (std::abs(glm::determinant(m)) < 1e-12) continue;
-      const glm::dvec3 x = glm::inverse(m) * (patches[patch].centroid - c[0]);
-      if (x.x < 0.0 || x.y < 0.0 || x.x + x.y > 1.0 || x.z < 1e-6 || x.z > nearest) continue;
-      nearest = x.z;
-      first = p + 1;
-    }
-    return first;
+    for (std::uint32_t p = 0; p < patches.size(); ++p) nearest = std::min(nearest, distanceTo(p, direction));
+    return seen == 0 ? nearest == 1e300 : distanceTo(seen - 1, direction) < 1.000001 * nearest && nearest < 1e300;
   };
   std::size_t pixel = 0, agree = 0;
   double sum = 0.0, fronts = 0.0;
@@ -266,7 +264,7 @@ TEST_F(RadiositySolutions, AHemicubesPixelsShowTheFirstPatchOnTheirRays) {
       for (int column = 0; column < 16; ++column, ++pixel) {
         const double a = (column + 0.5) / 8.0 - 1.0, b = (row + 0.5) / 8.0 - (face == 0 ? 1.0 : 0.0);
         const glm::dvec3 local[] = {{a, b, 1.0}, {1.0, a, b}, {-a, 1.0, b}, {-1.0, -a, b}, {a, -1.0, b}};
-        agree += firstOn(cube.axes * local[face]) == cube.seen[pixel];
+        agree += isFirst(cube.seen[pixel], cube.axes * local[face]);
         const std::size_t inMap = face == 0 ? pixel : static_cast<std::size_t>(256 + row * 16 + column);
         sum += cube.weights[inMap];
         if (cube.seen[pixel] == 0) continue;
