@@ -487,7 +487,9 @@ void WalkWindow::make(SideState& side) {
     side.lights = lightsOf(state_);
     state_.hemicube.reset();
     side.isBehind = false;
-    for (const std::string& warning : side.renderer->warnings()) state_.say(warning);
+    // The first is told last, and stays.
+    const std::vector<std::string>& warnings = side.renderer->warnings();
+    for (auto warning = warnings.rbegin(); warning != warnings.rend(); ++warning) state_.say(*warning);
     side.buildSeconds = secondsSince(start);
     side.failure.clear();
     side.failedAs.clear();

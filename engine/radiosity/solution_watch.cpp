@@ -5,8 +5,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 namespace lucerna {
@@ -53,7 +55,11 @@ bool SolutionWatch::isKept(const std::filesystem::path& checkpoint) {
 
 double SolutionWatch::mostBytes(const std::filesystem::path& checkpoint) {
   const bool isOwn = innermostSolutionWatch && checkpoint.parent_path() == innermostSolutionWatch->folder_;
-  return isOwn ? innermostSolutionWatch->limits_.mostBytes : std::numeric_limits<double>::infinity();
+  if (!isOwn) return std::numeric_limits<double>::infinity();
+  std::error_code error;
+  const double free = static_cast<double>(std::filesystem::space(innermostSolutionWatch->folder_, error).available);
+  return error ? innermostSolutionWatch->limits_.mostBytes
+               : std::min(innermostSolutionWatch->limits_.mostBytes, 0.5 * free);
 }
 
 double SolutionWatch::secondsOfChunk() {

@@ -20,7 +20,7 @@ class SolutionWatch {
   enum class Rows { resume, keep };
   struct Limits {
     double secondsOfChunk = 0.25;  ///< of hemicubes between two calls of `onStage`
-    double mostBytes = 4e9;  ///< of a file in `folder`: nobody asked for it, so it must not fill the disk
+    double mostBytes = 8e9;  ///< of a file in `folder`: nobody asked for it, so it must not fill the disk
   };
   SolutionWatch(std::filesystem::path folder, std::function<bool(const RadiosityStage&)> onStage,
                 Rows rows = Rows::resume);
@@ -38,7 +38,8 @@ class SolutionWatch {
   static void solved(const std::filesystem::path& checkpoint);
   /// Whether these are kept from an earlier solution. Light from behind makes other patches: then they are of no use.
   static bool isKept(const std::filesystem::path& checkpoint);
-  /// Bytes of a checkpoint, at most. Files that were asked for by name have no limit.
+  /// Bytes of a checkpoint, at most: the watch's limit, or half of what is free on the disk. Files that were asked for
+  /// by name have no limit.
   static double mostBytes(const std::filesystem::path& checkpoint);
 
  private:
