@@ -114,8 +114,8 @@ int solveCorrected(const RadiositySolve& options) {
   Progress progress("hemicubes", 1000, options.common.quiet);
   const RadiositySolution solution =
       solveScene(context, programs, scene, settings, checkpoint, [&](const RadiosityStage& stage) {
-        if (stage.total > 0) progress.update(static_cast<int>(1000 * stage.done / stage.total));
-        if (stage.kind == RadiosityStage::Kind::solving && !options.common.quiet)
+        showProgress(progress, stage);
+        if (stage.kind == RadiosityStage::Kind::solving && !stage.solve.isEstimate && !options.common.quiet)
           fmt::print("{:6.1f} products: residual {:.3g}, error at most {:.3g}, energy balance {:.3g}\n",
                      stage.solve.products, stage.solve.residual, stage.solve.errorBound, stage.solve.energyBalance);
         return !interrupted();

@@ -50,7 +50,7 @@ std::unique_ptr<Renderer> makeRenderer(const RenderOptions& options, const gl::C
   watchForInterrupt();
   Progress progress("hemicubes", 1000, options.common.quiet);
   const auto watch = watchSolutions([&](const RadiosityStage& stage) {
-    if (stage.total > 0) progress.update(static_cast<int>(1000 * stage.done / stage.total));
+    showProgress(progress, stage);
     return true;
   });
   auto renderer = std::make_unique<Renderer>(context, programs, scene, settings);

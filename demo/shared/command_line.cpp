@@ -1,10 +1,12 @@
 #include "shared/command_line.hpp"
 
 #include "base/error.hpp"
+#include "base/nearest_words.hpp"
 #include "gl/context.hpp"
 #include "shared/command_tree.hpp"
 #include "shared/commands.hpp"
 #include "shared/completions.hpp"
+#include "shared/programs.hpp"
 #include "shared/shipped_scenes.hpp"
 
 #include <CLI/CLI.hpp>
@@ -287,12 +289,28 @@ std::vector<std::string> argumentsOf(int argc, char** argv) {
   return arguments;
 }
 
+std::string nearestSubcommands(const CLI::App& app, const std::string& word) {
+  std::vector<std::string> names = subcommandsElsewhere(app.get_name());
+  for (const CLI::App* child : app.get_subcommands([](const CLI::App* a) { return !a->get_group().empty(); }))
+    names.push_back(child->get_name());
+  return nearestList(word, {names.begin(), names.end()}, 3);
+}
+
+std::string nearestOptions(const CLI::App& app, const std::string& word) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  return nearestList(word.substr(0, word.find('=')), {names.begin(), names.end()}, 3);
+}
+
 /// Of "help": the words but the last, --help, must name a command.
 void checkCommand(CLI::App& app, const std::vector<std::string>& words) {
   CLI::App* command = &app;
   for (std::size_t i = 0; i + 1 < words.size(); ++i) {
     const auto found = command->get_subcommands([&](const CLI::App* a) { return a->get_name() == words[i]; });
-    if (found.empty()) throwBadInput("help {}: no such command (lucerna --help lists them)", words[i]);
+    if (found.empty())
+      throwBadInput("help {}: no such command; nearest: {} (lucerna --help lists them)", words[i],
+                    nearestSubcommands(*command, words[i]));
     command = found.front();
   }
 }
@@ -323,7 +341,14 @@ int runProgram(const Program& program, int argc, char** argv,
     }
     const std::vector<std::string> rest = deepest->remaining();
     if (deepest->get_require_subcommand_min() > 0 && !rest.empty() && rest[0][0] != '-') {
-      printError(fmt::format("{}: no such subcommand (lucerna {}--help lists them)", rest[0], used));
+      printError(fmt::format("{}: no such subcommand; nearest: {} (lucerna {}--help lists them)", rest[0],
+                             nearestSubcommands(*deepest, rest[0]), used));
+      return static_cast<int>(ErrorKind::badInput);
+    }
+    if (const auto option = std::ranges::find_if(rest, [](const std::string& r) { return r.starts_with("--"); });
+        option != rest.end()) {
+      printError(fmt::format("{}: no such option; nearest: {} (lucerna {}--help lists them)", *option,
+                             nearestOptions(*deepest, *option), used));
       return static_cast<int>(ErrorKind::badInput);
     }
     printError(fmt::format("{} (lucerna {}--help lists the options)", error.what(), used));

@@ -106,6 +106,8 @@ class Progress {
   Progress(std::string what, int total, bool quiet);
   ~Progress();
   void update(int done);
+  /// Of other work than before: the time that is left is counted anew.
+  void update(const std::string& what, double share);
 
  private:
   std::string what_;
@@ -114,6 +116,9 @@ class Progress {
   std::chrono::steady_clock::time_point start_;
 };
 
+/// How far a solution is: what comes before the hemicubes, then those.
+void showProgress(Progress& progress, const RadiosityStage& stage);
+
 /// Applies to every command after watchForInterrupt(): on Ctrl-C (SIGINT) and SIGTERM, long work finishes its current
 /// step, keeps its state, writes no final file and ends with exitCode(). The same command continues from there.
 void watchForInterrupt();
@@ -121,8 +126,8 @@ bool interrupted();
 /// The signals end the program at once from here on: for work that keeps no state. Throws Stopped if one has come.
 void endAtInterrupt();
 /// For the lifetime of the result, solutions of the technique radiosity stop at an interruption, or if `goOn` is false;
-/// they keep their form factors in the folder of cached references, from which the same command goes on. keepsRows:
-/// until the end of that lifetime, so that other light needs no hemicubes.
+/// they keep their form factors in the folder of cached references, from which the same command goes on. keepsRows: for
+/// a window; until the end of that lifetime, so that other light needs no hemicubes, and `goOn` is called often.
 std::unique_ptr<SolutionWatch> watchSolutions(std::function<bool(const RadiosityStage&)> goOn = {},
                                               bool keepsRows = false);
 int exitCode();  ///< 0, or 128 + the signal's number: 130 after Ctrl-C, 143 after SIGTERM

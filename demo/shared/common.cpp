@@ -19,6 +19,10 @@
 
 namespace lucerna::demo {
 
+namespace {
+constexpr double kSecondsBetweenFrames = 0.04;  // of hemicubes, where a window draws in between
+}
+
 std::unique_ptr<SolutionWatch> watchSolutions(std::function<bool(const RadiosityStage&)> goOn, bool keepsRows) {
   std::filesystem::path folder = measure::ReferenceCache::defaultFolder();
   std::error_code error;
@@ -27,7 +31,15 @@ std::unique_ptr<SolutionWatch> watchSolutions(std::function<bool(const Radiosity
   return std::make_unique<SolutionWatch>(
       folder,
       [goOn = std::move(goOn)](const RadiosityStage& stage) { return !interrupted() && (!goOn || goOn(stage)); },
-      keepsRows ? SolutionWatch::Rows::keep : SolutionWatch::Rows::resume);
+      keepsRows ? SolutionWatch::Rows::keep : SolutionWatch::Rows::resume,
+      SolutionWatch::Limits{.secondsOfChunk =
+                                keepsRows ? kSecondsBetweenFrames : SolutionWatch::Limits().secondsOfChunk});
+}
+
+void showProgress(Progress& progress, const RadiosityStage& stage) {
+  if (*stage.prepares.what) progress.update(stage.prepares.what, std::max(stage.prepares.share, 0.0));
+  else if (stage.total > 0)
+    progress.update("hemicubes", static_cast<double>(stage.done) / static_cast<double>(stage.total));
 }
 
 // ---------------------------------------------------------------------------------------------------- options

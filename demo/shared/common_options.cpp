@@ -67,6 +67,14 @@ void Progress::update(int done) {
   drawn_ = true;
 }
 
+void Progress::update(const std::string& what, double share) {
+  if (what != what_) {
+    what_ = what;
+    start_ = Clock::now();
+  }
+  update(static_cast<int>(share * total_));
+}
+
 namespace {
 volatile std::sig_atomic_t g_interrupted = 0;  // the signal's number
 volatile std::time_t g_interruptedAt = 0;

@@ -88,6 +88,13 @@ std::string descriptionOf(const std::string& command) {
   CHECK(false, "{} is no other program's command", command);
 }
 
+std::vector<std::string> subcommandsElsewhere(std::string_view command) {
+  std::vector<std::string> names;
+  for (const Other& other : kOthers)
+    if (other.command == command && !other.subcommand.empty()) names.emplace_back(other.subcommand);
+  return names;
+}
+
 void addOther(Subcommands& commands, const std::string& name) {
   commands.add(name, descriptionOf(name), Work([] { return 0; }));
 }

@@ -9,6 +9,7 @@
 #include "shared/command_tree.hpp"
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace lucerna::demo {
@@ -19,6 +20,8 @@ int startOther(int argc, char** argv);
 
 /// For --help of `lucerna`.
 std::string descriptionOf(const std::string& command);
+/// Subcommands of a command that are another program's.
+std::vector<std::string> subcommandsElsewhere(std::string_view command);
 /// Declares a command of another program, for --help alone.
 void addOther(Subcommands& commands, const std::string& name);
 

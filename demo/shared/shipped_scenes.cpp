@@ -2,6 +2,7 @@
 
 #include "base/data.hpp"
 #include "base/error.hpp"
+#include "base/nearest_words.hpp"
 
 namespace lucerna::demo {
 
@@ -33,9 +34,9 @@ void checkSceneName(const std::string& text) {
   if (text.empty() || file.has_parent_path() || file.has_extension() || fs::exists(file, error)) return;
   const auto scenes = shippedScenes();
   if (scenes.empty() || scenes.contains(text)) return;
-  std::string known;
-  for (const auto& [name, path] : scenes) known += (known.empty() ? "" : ", ") + name;
-  throwBadInput("{}: no such file, and no shipped scene: {}", text, known);
+  std::vector<std::string_view> names;
+  for (const auto& [name, path] : scenes) names.push_back(name);
+  throwBadInput("{}: no such file, and no shipped scene; nearest: {}", text, nearestList(text, names));
 }
 
 }  // namespace lucerna::demo

@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "base/files.hpp"
+#include "base/nearest_words.hpp"
 
 #include <fmt/format.h>
 
@@ -153,9 +154,9 @@ void InputPlayer::touch(Ui* ui) {
       touching_.clear();
       return;
     }
-    std::string known;
-    for (const std::string& label : ui->labels()) known += (known.empty() ? "" : ", ") + label;
-    fail(touchingLine_, fmt::format("{}: the panel shows no such control; expected one of {}", touching_, known));
+    const std::set<std::string>& known = ui->labels();
+    fail(touchingLine_, fmt::format("{}: the panel shows no such control; nearest: {}", touching_,
+                                    nearestList(touching_, {known.begin(), known.end()})));
   }
   // The panel scrolls to it for some frames: it is touched once it has stopped moving.
   if (touchStep_ == 0) {

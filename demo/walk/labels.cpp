@@ -45,6 +45,17 @@ std::array<std::string, 3> scaleOf(Show show, float errorScale) {
 std::vector<Label> placeLabels(const WalkState& state, glm::ivec2 view, Compare::Inputs& inputs) {
   std::vector<Label> labels;
   const bool one = inputs.layout == Layout::one;
+  if (state.hemicube && inputs.left.radiance == &state.hemicube->picture()) {
+    const float font = ImGui::GetFontSize();
+    Label label;
+    label.lines = state.hemicube->lines();
+    float width = 0.0f;
+    for (const std::string& text : label.lines) width = std::max(width, ImGui::CalcTextSize(text.c_str()).x);
+    label.corner = glm::vec2(kMargin * font);
+    label.size = {width + 2.0f * kPad * font, (static_cast<float>(label.lines.size()) + 2.0f * kPad) * font};
+    labels.push_back(label);
+    return labels;
+  }
   if (one && (inputs.left.show == Show::picture || inputs.left.show == Show::values)) return labels;
   const float font = ImGui::GetFontSize();
   const glm::vec2 pixels(view);

@@ -7,6 +7,7 @@
 #include "base/statistics.hpp"
 #include "irradiance_cache/irradiance_cache_frame.hpp"
 #include "lpv/lpv_frame.hpp"
+#include "radiosity/radiosity_frame.hpp"
 #include "render/techniques.hpp"
 #include "walk/controls.hpp"
 #include "walk/keys.hpp"
@@ -244,14 +245,19 @@ void showSide(Ui& ui, WalkState& s, int index) {
     chooseTechnique(side.options, technique);
   menu(ui, "light", side.options.component, kComponents);
   menu(ui, "fidelity", side.options.fidelity, kFidelities);
-  if (side.renderer)
+  if (side.renderer && side.built.technique != side.options.technique)
+    line("shown until it is ready: " + side.built.technique);
+  else if (side.renderer)
     line(fmt::format("made in {:.2f} s, {:.1f} MiB on the GPU", side.buildSeconds,
                      static_cast<double>(side.renderer->gpuBytes()) / 1048576.0));
-  if (!side.failure.empty()) {
-    ImGui::PushStyleColor(ImGuiCol_Text, IM_COL32(255, 120, 90, 255));
-    wrapped(side.failure);
+  const auto inColour = [](ImU32 colour, const std::string& text) {
+    ImGui::PushStyleColor(ImGuiCol_Text, colour);
+    wrapped(text);
     ImGui::PopStyleColor();
-  }
+  };
+  if (side.renderer)
+    for (const std::string& warning : side.renderer->warnings()) inColour(IM_COL32(255, 190, 80, 255), warning);
+  if (!side.failure.empty()) inColour(IM_COL32(255, 120, 90, 255), side.failure);
 }
 
 void showJudgement(WalkState& s, int index) {
@@ -327,6 +333,15 @@ void showLpvSteps(Ui& ui, WalkState& s) {
   ui.note("slice");
 }
 
+/// What a patch sees.
+void showHemicube(Ui& ui, WalkState& s) {
+  if (button(ui, "hemicube of the middle")) s.hemicubeWanted = true;
+  explain("The five faces of the hemicube of the patch in the middle of the picture, as its form factors are found.");
+  checkbox(ui, "hemicubes by clicking", s.hemicubeByClick);
+  explain("A click on the picture shows the hemicube of the patch there; another one shows the picture again.");
+  if (s.hemicube && button(ui, "back to the picture")) s.hemicube.reset();
+}
+
 void showStages(Ui& ui, WalkState& s) {
   const SideState& side = s.side();
   if (!side.renderer) {
@@ -351,6 +366,16 @@ void showStages(Ui& ui, WalkState& s) {
   }
   if (isLight) slider(ui, "brightness", s.stageFactor, -20.0f, 40.0f, "2^%.1f");
   if (volumeOf(side.renderer->technique())) showLpvSteps(ui, s);
+  if (radiosityOf(side.renderer->technique())) showHemicube(ui, s);
+  if (s.solving.curve().size() > 1) {
+    const auto& last = s.solving.curve().back();
+    line(fmt::format("residual {:.1e} after {:.4g} products", last.residual, last.products));
+    plotResidual(s.solving, 5.0f);
+    explain(
+        "Of the last radiosity solution, max |E + rho F B - B| over the mean of B, by products with the form factors, "
+        "in "
+        "powers of ten. A sweep is a product, as are as many shots as there are patches.");
+  }
   int count = static_cast<int>(s.countView), glyphs = static_cast<int>(s.glyphs);
   if (menu(ui, "count of", count, kCountViewNames)) s.countView = static_cast<CountView>(count);
   explain("Replaces the picture: black is none, then red, yellow, and white for the number set by the slider.");

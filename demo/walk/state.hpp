@@ -9,8 +9,10 @@
 #include "walk/compare.hpp"
 #include "walk/free_camera.hpp"
 #include "walk/scene_views.hpp"
+#include "walk/hemicube_view.hpp"
 #include "walk/live_reference.hpp"
 #include "walk/lpv_steps.hpp"
+#include "walk/solving.hpp"
 
 #include <array>
 #include <deque>
@@ -26,6 +28,15 @@ namespace lucerna::demo {
 enum class Shows { technique, reference, picture };
 constexpr std::array<std::string_view, 3> kShowsNames{"a technique", "the reference", "a stored picture"};
 
+/// Lights of a scene, as far as the panel changes them.
+struct LightState {
+  std::optional<DirectionalLight> sun;
+  std::vector<SpotLight> spots;
+  std::vector<PointLight> points;
+  glm::vec3 sky{0.0f};  ///< factor of the environment
+  float emission = 1.0f;  ///< factor of all emissive materials
+};
+
 /// A or B.
 struct SideState {
   PictureOptions options;  ///< requested
@@ -36,6 +47,8 @@ struct SideState {
   std::unique_ptr<Renderer> renderer;
   PictureOptions built;
   std::string builtAs, failedAs;  ///< textOf() of options, with the scene's version
+  LightState lights;  ///< of the renderer
+  bool isBehind = false;  ///< the renderer missed a change of the scene that it could not follow
   std::string failure;  ///< why the options could not be applied; empty: they could
   double buildSeconds = 0.0;
   std::optional<gl::Texture> picture;
@@ -58,15 +71,6 @@ struct PathState {
 struct TimeState {
   bool held = false, loops = true;
   double seconds = 0.0, speed = 1.0;
-};
-
-/// Lights of a scene, as far as the panel changes them.
-struct LightState {
-  std::optional<DirectionalLight> sun;
-  std::vector<SpotLight> spots;
-  std::vector<PointLight> points;
-  glm::vec3 sky{0.0f};  ///< factor of the environment
-  float emission = 1.0f;  ///< factor of all emissive materials
 };
 
 /// What undo and redo step through.
@@ -101,6 +105,7 @@ struct WalkState {
   int edited = 0;  ///< side edited by the settings section
   std::vector<Edit> undo, redo;  ///< the latest last
   std::string settingsFilter;
+  SolvingState solving;
 
   // Comparison
   Layout layout = Layout::one;
@@ -122,6 +127,9 @@ struct WalkState {
   bool lpvStepsWanted = false;
   std::unique_ptr<LpvSteps> lpvSteps;  ///< of the view at which they were asked for
   int lpvStep = -1;  ///< shown instead of the picture; negative: none
+  std::unique_ptr<HemicubeView> hemicube;  ///< shown instead of the picture
+  bool hemicubeWanted = false, hemicubeByClick = false;  ///< of the middle pixel; of one that is clicked on
+  std::optional<glm::dvec2> hemicubePlace;  ///< in the window
   Glyphs glyphs = Glyphs::none;
   int glyphCascade = MAX_CASCADES - 1, glyphLevel = 1, glyphMost = 400;
 

@@ -11,6 +11,8 @@
 #include "gl/pass.hpp"
 #include "gl/read_pictures.hpp"
 #include "lpv/lpv_frame.hpp"
+#include "radiosity/radiosity_frame.hpp"
+#include "render/techniques.hpp"
 #include "scene/motion.hpp"
 #include "scene/studio.hpp"
 #include "walk/labels.hpp"
@@ -39,9 +41,17 @@ constexpr double kMessageSeconds = 8.0, kHintSeconds = 8.0;
 constexpr double kLongestStep = 0.25;  // seconds by which the path advances in one frame
 constexpr double kRest = 0.25;  // seconds between looks at whether the program was interrupted, while nothing changes
 constexpr double kSmoothSeconds = 0.3;  // slower changes of light wait until the mouse button is released
+constexpr double kBetweenFrames = 1.0 / 30.0, kBetweenNotes = 0.1;  // seconds, while a solution is made
+constexpr double kLongGap = 0.3;  // seconds, to be told
 constexpr std::size_t kMostEdits = 100;
 constexpr int kStillFrames = 3;  // still frames before the reference of a view is started
 constexpr std::size_t kPlotFrames = 240;
+
+/// Whether a technique needs minutes before its first picture.
+bool solves(std::string_view technique) {
+  return std::ranges::any_of(techniqueNamed(technique).settings,
+                             [](const Setting& setting) { return setting.cost == SettingCost::solution; });
+}
 
 bool isPicture(const fs::path& file) {
   const std::string extension = lowerExtension(file);
@@ -145,6 +155,8 @@ void WalkWindow::steer(bool pointing) {
     state_.split = std::clamp(static_cast<float>(input_.cursor.x) / pixels.x, 0.0f, 1.0f);
   if (overlay_.drags(glm::vec2(input_.cursor), left)) {
     changed();
+  } else if (state_.hemicubeByClick) {
+    if (left && !leftBefore_) state_.hemicubePlace = input_.cursor;
   } else if (state_.inspectsByClick) {
     if (left && !leftBefore_) state_.inspectedPlace = input_.cursor;
   } else if (state_.orbits) {
@@ -206,6 +218,7 @@ void WalkWindow::act(Action action) {
     case Action::capture: s.captureWanted = true; break;
     case Action::end:
       if (s.help) s.help = false;
+      else if (s.solving.isOn() && !s.asksToEnd) s.solving.cancelled = true;
       else s.asksToEnd = !s.asksToEnd;
       break;
     case Action::pause: s.path.paused = !s.path.paused; break;
@@ -319,14 +332,16 @@ bool WalkWindow::relight() {
 /// The scene has changed: renderers follow it, or are made anew where they cannot.
 void WalkWindow::follow(const SceneChange& change) {
   if (!change.any()) return;
-  const std::array<bool, 2> isUpToDate{state_.sides[0].builtAs == wantedOf(state_.sides[0]),
-                                       state_.sides[1].builtAs == wantedOf(state_.sides[1])};
   ++state_.sceneVersion;
-  for (std::size_t i = 0; i < 2; ++i) {
-    SideState& side = state_.sides[i];
+  for (SideState& side : state_.sides) {
     side.judgement.clear();
-    if (side.renderer && isUpToDate[i] && side.renderer->follow(context_, programs_, *state_.scene, change))
-      side.builtAs = wantedOf(side);
+    // One of other options follows too: it is shown until the one for these is made.
+    side.isBehind =
+        side.isBehind || !side.renderer || !side.renderer->follow(context_, programs_, *state_.scene, change);
+    if (!side.isBehind) {
+      side.builtAs = wantedOf(side.built);
+      side.lights = lightsOf(state_);
+    }
     side.settled = false;
   }
   changed();
@@ -371,12 +386,16 @@ void WalkWindow::loadWantedScene() {
     Spline path = pathOf(*scene);
     RenderSettings settings = state_.sides[0].options.parse();
     settings.size = state_.sides[0].renderer->size();
+    const bool isSolved = solves(settings.technique) && drawsWhileSolving();
+    PictureOptions shown = state_.sides[0].options;
     const gl::BuildWatch watch([this](const std::string& name) { breathe("compiling " + name); });
-    auto renderer = std::make_unique<Renderer>(context_, programs_, *scene, settings);
+    auto renderer =
+        isSolved ? preview(*scene, shown) : std::make_unique<Renderer>(context_, programs_, *scene, settings);
     // Nothing can fail from here on: the new scene replaces the old one.
     state_.reference.reset();
     state_.countViews.reset();
     state_.lpvSteps.reset();
+    state_.hemicube.reset();
     for (SideState& side : state_.sides) {
       side.renderer.reset();
       side.builtAs.clear();
@@ -392,8 +411,10 @@ void WalkWindow::loadWantedScene() {
     lastEdit_.lights = shownLights_ = lightsOf(state_);
     SideState& a = state_.sides[0];
     a.renderer = std::move(renderer);
-    a.built = a.options;
-    a.builtAs = wantedOf(a);
+    a.built = shown;
+    a.builtAs = wantedOf(a.built);
+    a.lights = lightsOf(state_);
+    a.isBehind = false;
     state_.sceneText = file.string();
     if (host_.kind() == HostKind::window && !player_) rememberFile(file);
     state_.path.spline = std::move(path);
@@ -412,8 +433,8 @@ void WalkWindow::loadWantedScene() {
   }
 }
 
-std::string WalkWindow::wantedOf(const SideState& side) const {
-  return textOf(side.options) + fmt::format(" {}", state_.sceneVersion);
+std::string WalkWindow::wantedOf(const PictureOptions& options) const {
+  return textOf(options) + fmt::format(" {}", state_.sceneVersion);
 }
 
 void WalkWindow::make(SideState& side) {
@@ -428,20 +449,47 @@ void WalkWindow::make(SideState& side) {
     }
     if (side.picture) return;
   }
-  const std::string wanted = wantedOf(side);
+  const std::string wanted = wantedOf(side.options);
   if (side.shows != Shows::technique && side.renderer) return;
   if (wanted == side.builtAs || wanted == side.failedAs) return;
   const bool first = !state_.sides[0].renderer;
+  const auto endSolving = [this] {
+    hasSolved_ = hasSolved_ || made_;
+    state_.solving.end();
+    made_ = nullptr;
+    drawsBetween_ = false;
+  };
   try {
     RenderSettings settings = side.options.parse();
     settings.size = pictureSize();
     const auto start = Clock::now();
     breathe("making technique " + side.options.technique);
     const gl::BuildWatch watch([this](const std::string& name) { breathe("compiling " + name); });
+    if (solves(settings.technique)) {
+      state_.solving.begin();
+      if (drawsWhileSolving()) {
+        if (!side.renderer) {
+          side.built = side.options;
+          side.renderer = preview(*state_.scene, side.built);
+          side.builtAs = wantedOf(side.built);
+          side.lights = lightsOf(state_);
+          side.isBehind = false;
+        }
+        made_ = &side;
+        madeAs_ = wanted;
+      }
+    }
     auto renderer = std::make_unique<Renderer>(context_, programs_, *state_.scene, settings);
+    endSolving();
     lastBreath_ = {};  // a driver may compile its programs only now
     breathe("drawing the first picture by " + side.options.technique);
     side.renderer = std::move(renderer);
+    side.lights = lightsOf(state_);
+    state_.hemicube.reset();
+    side.isBehind = false;
+    // The first is told last, and stays.
+    const std::vector<std::string>& warnings = side.renderer->warnings();
+    for (auto warning = warnings.rbegin(); warning != warnings.rend(); ++warning) state_.say(*warning);
     side.buildSeconds = secondsSince(start);
     side.failure.clear();
     side.failedAs.clear();
@@ -452,29 +500,61 @@ void WalkWindow::make(SideState& side) {
     side.judgedReference = 0;
     if (settings.exposure && first) state_.exposure = *settings.exposure;
   } catch (const Error& error) {
+    endSolving();
     if (first) throw;
     side.failedAs = wanted;
     side.failure = error.what();
     state_.say(error.what());
   } catch (const Stopped& stopped) {
-    if (first) {
+    const bool isLeft = made_ && !state_.solving.cancelled;  // for what is wanted now
+    endSolving();
+    if (isLeft) return;
+    if (first && !side.renderer) {
       logWarning("{}", stopped.what());
       stop_ = true;
       return;
     }
-    side.options = side.built;
-    if (!side.renderer) side.failedAs = wanted;
-    if (changeOf(lastEdit_.lights, lightsOf(state_)).any() && !state_.scene->motion) {
-      // The renderer that stays is of the lights before; the other side's, if it is of these, is not.
-      setLights(state_, lastEdit_.lights);
-      shownLights_ = lastEdit_.lights;
-      for (SideState& each : state_.sides) each.builtAs = &each == &side ? wantedOf(each) : "";
-    }
+    takeBack(side);
+    if (!side.renderer || side.builtAs != wantedOf(side.options)) side.failedAs = wantedOf(side.options);
     state_.say("stopped; settings and light as before");
   }
 }
 
+/// Settings and lights become those of the side's renderer again; the other side follows.
+void WalkWindow::takeBack(SideState& side) {
+  side.options = side.built;
+  const SceneChange change = changeOf(lightsOf(state_), side.lights);
+  if (!side.renderer || !change.any() || state_.scene->motion) return;
+  setLights(state_, side.lights);
+  shownLights_ = side.lights;
+  follow(change);
+  side.isBehind = false;
+  side.builtAs = wantedOf(side.built);
+}
+
+/// Whether frames go on while a technique is solved. What is measured or played is the same on every machine.
+bool WalkWindow::drawsWhileSolving() const {
+  return host_.kind() == HostKind::window && !player_ && options_.common.json.empty();
+}
+
+/// A renderer that draws at once, until a solution is made: by direct light, or by the cache where surfaces alone
+/// shine.
+std::unique_ptr<Renderer> WalkWindow::preview(const Scene& scene, PictureOptions& options) {
+  chooseTechnique(options, analyse(scene).anyLight() ? "direct" : "irradiance-cache");
+  RenderSettings settings = options.parse();
+  settings.size = pictureSize();
+  return std::make_unique<Renderer>(context_, programs_, scene, settings);
+}
+
+/// Whether what is being made is still what is asked for.
+bool WalkWindow::isWanted() const {
+  const bool isLit = !changeOf(shownLights_, lightsOf(state_)).any();
+  return isLit && wantedOf(made_->options) == madeAs_ && made_->shows == Shows::technique && !state_.sceneToLoad &&
+         !state_.reloadWanted;
+}
+
 void WalkWindow::makeReady() {
+  if (changeOf(shownLights_, lightsOf(state_)).any()) return;  // once it is let go (relight)
   if (state_.reloadWanted) {
     state_.reloadWanted = false;
     const auto reload = programs_.reloadChanged();
@@ -532,8 +612,8 @@ void WalkWindow::draw() {
   for (int i = 0; i < 2; ++i) {
     SideState& side = state_.sides[static_cast<std::size_t>(i)];
     if (!state_.isVisible(i) || !side.renderer || (side.shows == Shows::picture && side.picture)) continue;
-    const bool rests =
-        !state_.drawsAtRest && still_ > kStillFrames && side.settled && side.renderer->exposure() == state_.exposure;
+    const bool rests = still_ > kStillFrames && side.renderer->exposure() == state_.exposure &&
+                       (drawsBetween_ || (!state_.drawsAtRest && side.settled));
     if (rests) continue;
     side.renderer->setExposure(state_.exposure);
     side.renderer->render(state_.camera->camera());
@@ -578,7 +658,7 @@ void WalkWindow::readPixel(const Compare::Inputs& inputs) {
 }
 
 void WalkWindow::inspectPixel(const Compare::Inputs& inputs) {
-  if (!state_.inspectedPlace) return;
+  if (!state_.inspectedPlace || drawsBetween_) return;
   const glm::vec2 place(*std::exchange(state_.inspectedPlace, std::nullopt));
   if (place.x < 0.0f || place.x >= static_cast<float>(view_.x)) return;
   const auto pixel = Compare::pictureAt(inputs, view_, place);
@@ -597,6 +677,37 @@ void WalkWindow::inspectPixel(const Compare::Inputs& inputs) {
   }
 }
 
+/// The hemicube of the patch that was asked for; asked for anew in a hemicube, the picture.
+void WalkWindow::makeHemicube(const Compare::Inputs& inputs) {
+  const std::optional<glm::dvec2> place = std::exchange(state_.hemicubePlace, std::nullopt);
+  const bool ofMiddle = std::exchange(state_.hemicubeWanted, false);
+  const SideState& side = state_.side();
+  const RadiosityView* view = side.renderer ? radiosityOf(side.renderer->technique()) : nullptr;
+  if (!view || drawsBetween_) state_.hemicube.reset();
+  if (!view || drawsBetween_ || (!ofMiddle && !place)) return;
+  if (place && state_.hemicube) {
+    state_.hemicube.reset();
+    return;
+  }
+  const glm::ivec2 size = side.renderer->size();
+  const auto pixel = ofMiddle ? std::optional(size / 2) : Compare::pictureAt(inputs, view_, glm::vec2(*place));
+  const auto patch =
+      pixel ? patchAt(view->solution().mesh, state_.camera->camera(), *pixel, size) : std::optional<std::uint32_t>();
+  if (!patch) {
+    state_.say("no patch there");
+    return;
+  }
+  try {
+    breathe("drawing the hemicube");
+    const gl::BuildWatch watch([this](const std::string& name) { breathe("compiling " + name); });
+    const auto& settings = side.renderer->settings().of<RadiosityView::Settings>().solution;
+    state_.hemicube = std::make_unique<HemicubeView>(context_, programs_, *state_.scene, view->solution(), settings,
+                                                     *patch, state_.exposure);
+  } catch (const Error& error) { state_.say(error.what()); } catch (const Stopped&) {
+    state_.say("not drawn");
+  }
+}
+
 /// A stage's result or a count of the shown side, if one was chosen, instead of pictures.
 void WalkWindow::showDebugView(Compare::Inputs& inputs) {
   const SideState& shown = state_.side();
@@ -606,6 +717,11 @@ void WalkWindow::showDebugView(Compare::Inputs& inputs) {
     inputs.left = {&stageView_->record(picture, state_.stageLayer, std::exp2(state_.stageFactor), state_.scene->bounds),
                    Show::values, nullptr};
   };
+  makeHemicube(inputs);
+  if (state_.hemicube) {
+    inputs.layout = Layout::one;
+    inputs.left = {&state_.hemicube->picture(), Show::values, nullptr};
+  }
   if (showsLpvStep()) show(state_.lpvSteps->picture(std::min(state_.lpvStep, state_.lpvSteps->steps())));
   if (!state_.stage.empty() && shown.renderer) {
     for (const StagePicture& picture : shown.renderer->stagePictures())
@@ -633,8 +749,9 @@ void WalkWindow::compose() {
                                                       radianceOf(state_.shown)->size2d() == state_.reference->size());
   const bool stage = (!state_.stage.empty() || showsLpvStep()) && shown.renderer;
   const bool counts = state_.countView != CountView::none && shown.renderer;
-  const bool plain = !stage && !counts && state_.layout == Layout::one && (state_.show == Show::picture || !shows) &&
-                     state_.zoom == 1.0f && !state_.magnifier &&
+  const bool hemicube = state_.hemicube || state_.hemicubePlace || state_.hemicubeWanted;
+  const bool plain = !stage && !counts && !hemicube && state_.layout == Layout::one &&
+                     (state_.show == Show::picture || !shows) && state_.zoom == 1.0f && !state_.magnifier &&
                      radianceOf(state_.shown) == (shown.renderer ? &shown.renderer->radiance() : nullptr) &&
                      shown.renderer && shown.renderer->size() == view_;
   presented_ = plain && !drawsUi() && !state_.shotWanted && !state_.inspectedPlace && !state_.answer &&
@@ -727,6 +844,7 @@ void WalkWindow::buildUi(double seconds) {
   ui_->beginWindows();
   if (state_.panel) Panel::show(*ui_, state_, host_);
   if (state_.help) Panel::showHelp(*ui_, state_);
+  if (state_.solving.isOn() && made_) showSolving(*ui_, state_.solving);
   if (state_.asksToEnd) Panel::showQuestion(*ui_, state_);
   Panel::showValues(state_);
   Panel::showMessage(state_, "", -1.0);
@@ -740,12 +858,17 @@ void WalkWindow::drawUi(double seconds) {
 
 // Controls that recorded input uses by name must exist; apart from them, nothing invisible is built.
 bool WalkWindow::drawsUi() const {
-  return state_.panel || state_.help || state_.asksToEnd || state_.hint ||
+  return state_.panel || state_.help || state_.asksToEnd || state_.hint || made_ ||
          (!state_.messages.empty() && state_.messageAge < kMessageSeconds) || player_.has_value();
 }
 
 void WalkWindow::breathe(const std::string& what, double share) {
   const bool measures = !options_.common.json.empty() && !player_;
+  if (made_) {
+    state_.solving.note(what);
+    if (!drawBetween()) throw Stopped(what);
+    return;
+  }
   if (measures || window_.x <= 0 || secondsSince(lastBreath_) < 0.1) return;
   if (!player_) {
     host_.pump();
@@ -762,17 +885,54 @@ void WalkWindow::breathe(const std::string& what, double share) {
 }
 
 bool WalkWindow::goesOnSolving(const RadiosityStage& stage) {
+  state_.solving.note(stage);
+  if (made_) return drawBetween();
   if (player_ || secondsSince(lastBreath_) < 0.1) return true;
   lastBreath_ = Clock::now();
   host_.pump();
   if (host_.input().closes()) stop_ = true;
-  using Kind = RadiosityStage::Kind;
-  std::string what = stage.kind == Kind::direct ? "direct light" : "form factors";
-  if (stage.kind == Kind::solving) what = fmt::format("solving, error at most {:.2g}", stage.solve.errorBound);
-  else if (stage.total > 0)
-    what += fmt::format(", {:.0f} %", 100.0 * static_cast<double>(stage.done) / static_cast<double>(stage.total));
-  host_.setTitle(fmt::format("Lucerna - {} - radiosity: {} - Escape stops", state_.scene->name, what));
   return !stop_ && !interrupted() && !host_.input().takeEscape();
+}
+
+/// A frame of what is there, while a solution is made: camera, keys and panel act as ever, and what is asked for
+/// meanwhile is made afterwards. False: the solution is to stop.
+bool WalkWindow::drawBetween() {
+  if (drawsBetween_) return true;  // asked by what this frame itself makes
+  host_.pump();
+  const double seconds = secondsSince(lastBreath_);
+  const bool acts = host_.input().waits() || walking_.move != glm::dvec3(0.0) || still_ <= kStillFrames;
+  // The solution has half of the time, and most of it where nothing moves.
+  if (seconds < (acts ? std::max(kBetweenFrames, frameBetween_) : std::max(kBetweenNotes, 4.0 * frameBetween_)))
+    return true;
+  const auto start = Clock::now();
+  if (seconds > kLongGap) logVerbose("{:.2f} s without a frame before: {}", seconds, state_.solving.text());
+  drawsBetween_ = true;
+  const auto end = [this, start](bool goesOn) {
+    drawsBetween_ = false;
+    lastBreath_ = Clock::now();
+    frameBetween_ = secondsSince(start);
+    return goesOn;
+  };
+  if (!takeInput()) {
+    stop_ = true;
+    return end(false);
+  }
+  const glm::ivec2 window = host_.framebufferSize();
+  if (state_.solving.cancelled || !isWanted()) return end(false);
+  if (window.x <= 0 || window.y <= 0 || host_.isMinimised()) return end(true);
+  resizeTo(window);
+  moveCamera(std::min(seconds, kLongestStep));
+  draw();
+  compose();
+  recorder_.record(shownPicture(), seconds);
+  drawUi(seconds);
+  host_.present(pictureTarget_.id(), window_);
+  host_.setTitle(fmt::format("Lucerna - {} - radiosity: {} - Escape stops", state_.scene->name, state_.solving.text()));
+  ++still_;
+  ++quiet_;
+  state_.messageAge += seconds;
+  sinceHint_ += seconds;
+  return end(true);
 }
 
 void WalkWindow::pace(Clock::time_point start) {
@@ -816,11 +976,12 @@ void WalkWindow::run() {
     const double dt = player_ ? kPlayedFrame : measured;
     frameStart = start;
     const glm::ivec2 window = host_.kind() == HostKind::window ? host_.framebufferSize() : playedSize_;
-    if (window.x <= 0 || window.y <= 0) {  // minimised
+    if (window.x <= 0 || window.y <= 0 || host_.isMinimised()) {
       if (!player_) host_.pump(kRest);
       ++frames_;
       continue;
     }
+    // Scene, light and renderers.
     resizeTo(window);
     loadWantedScene();
     moveScene(dt);
@@ -830,6 +991,7 @@ void WalkWindow::run() {
     if (relit) followSeconds_ = secondsSince(beforeLight);
     noteEdits();
     if (stop_) break;
+    // The picture.
     moveCamera(dt);
     recorder_.beginCapture(frames_ == options_.capture);
     draw();
@@ -851,7 +1013,12 @@ void WalkWindow::run() {
     state_.messageAge += dt;
     sinceHint_ += dt;
     if (sinceHint_ > kHintSeconds) state_.hint = false;
-    state_.frameMs.push_back(static_cast<float>(1e3 * secondsSince(start)));
+    if (std::exchange(hasSolved_, false)) {  // no frame's time
+      titleTime = Clock::now();
+      framesOfTitle_ = 0;
+    } else {
+      state_.frameMs.push_back(static_cast<float>(1e3 * secondsSince(start)));
+    }
     if (state_.frameMs.size() > kPlotFrames) state_.frameMs.erase(state_.frameMs.begin());
     ++framesOfTitle_;
     if (secondsSince(titleTime) > 0.5) {
@@ -882,6 +1049,9 @@ nlohmann::ordered_json WalkWindow::toJson() const {
                         {"count", ms.size()}};
   }
   json["messages"] = state_.messages;
+  if (state_.hemicube) json["hemicube"] = {{"patch", state_.hemicube->patch()}, {"fronts", state_.hemicube->seen()}};
+  for (const SolvingState::Point& point : state_.solving.curve())
+    json["residuals"].push_back({point.products, point.residual});
   if (state_.lpvSteps) json["flux_by_step"] = state_.lpvSteps->energies();
   if (const auto& sun = state_.scene->sun) json["sun"] = {sun->direction.x, sun->direction.y, sun->direction.z};
   json["lamps"] = nlohmann::ordered_json::array();

@@ -47,8 +47,13 @@ class WalkWindow {
   void moveCamera(double seconds);
   void loadWantedScene();
   void makeReady();
-  std::string wantedOf(const SideState& side) const;  ///< of builtAs, were it up to date
+  std::string wantedOf(const PictureOptions& options) const;  ///< of builtAs, were it up to date
   void make(SideState& side);
+  void takeBack(SideState& side);
+  bool drawsWhileSolving() const;
+  std::unique_ptr<Renderer> preview(const Scene& scene, PictureOptions& options);
+  bool isWanted() const;
+  bool drawBetween();
   void measureLpvSteps();
   bool showsLpvStep() const;
   void draw();
@@ -56,6 +61,7 @@ class WalkWindow {
   bool allSettled() const;
   void compose();
   void showDebugView(Compare::Inputs& inputs);
+  void makeHemicube(const Compare::Inputs& inputs);
   void readPixel(const Compare::Inputs& inputs);
   void inspectPixel(const Compare::Inputs& inputs);
   void pace(Clock::time_point start);
@@ -65,7 +71,7 @@ class WalkWindow {
   /// Called during long work: shows the old picture and a note of what is being done. Throws Stopped if Escape was
   /// pressed.
   void breathe(const std::string& what, double share = -1.0);
-  /// Called while radiosity is solved, which leaves no passes to draw by: the title tells how far. False: to stop.
+  /// Called between the passes by which radiosity is solved: draws a frame. False: to stop.
   bool goesOnSolving(const RadiosityStage& stage);
   void resizeTo(glm::ivec2 window);
   void buildUi(double seconds);
@@ -106,6 +112,11 @@ class WalkWindow {
   int quiet_ = 0;  ///< frames since there was input
   bool touched_ = false;  ///< there was input, so the walk does not end by itself
   bool stop_ = false;
+  const SideState* made_ = nullptr;  ///< the side that is being made, of a technique that is solved
+  std::string madeAs_;  ///< as SideState::builtAs
+  bool drawsBetween_ = false;  ///< a frame while it is being made
+  bool hasSolved_ = false;  ///< in this frame
+  double frameBetween_ = 0.0;  ///< seconds that the last such frame took
   bool presented_ = false;  ///< compose() presented the renderer's own picture
   int frames_ = 0;
   double seconds_ = 0.0, sinceHint_ = 0.0;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -25,16 +26,28 @@ inline std::size_t editDistance(std::string_view a, std::string_view b) {
   return before[b.size()];
 }
 
-/// At most `most` of `words`, nearest first. The part before a word's last dot may be missing or another, for one edit.
+/// At most `most` of `words`, nearest first. The part before a word's last dot may be missing or another, for one edit,
+/// and so may be the end of a word.
 inline std::vector<std::string_view> nearestWords(std::string_view word, std::vector<std::string_view> words,
                                                   std::size_t most = 4) {
   const auto afterDot = [](std::string_view w) { return w.substr(w.rfind('.') + 1); };  // npos + 1 is 0
+  const auto beforeDot = [](std::string_view w) { return w.substr(0, w.rfind('.') + 1); };
   const auto distance = [&](std::string_view w) {
-    return std::min(editDistance(word, w), editDistance(afterDot(word), afterDot(w)) + 1);
+    const bool isBeginning = !word.empty() && w.size() > word.size() && w.starts_with(word);
+    const std::size_t edits = std::min(editDistance(word, w), editDistance(afterDot(word), afterDot(w)) + 1);
+    return std::pair(isBeginning ? std::size_t{1} : edits, beforeDot(word) != beforeDot(w));
   };
   std::ranges::stable_sort(words, {}, distance);
   words.resize(std::min(most, words.size()));
   return words;
+}
+
+/// The same as a list: "first, second".
+inline std::string nearestList(std::string_view word, std::vector<std::string_view> words, std::size_t most = 4) {
+  std::string list;
+  for (const std::string_view near : nearestWords(word, std::move(words), most))
+    list.append(list.empty() ? "" : ", ").append(near);
+  return list;
 }
 
 }  // namespace lucerna

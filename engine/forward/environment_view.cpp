@@ -11,8 +11,8 @@ namespace {
 constexpr GLuint kPictureUnit = 0;
 }
 
-EnvironmentView::EnvironmentView(gl::ProgramLibrary& programs, const Scene& scene)
-    : radiance_(scene.environment->radiance),
+EnvironmentView::EnvironmentView(gl::ProgramLibrary& programs, const Scene& scene, const glm::vec3& factor)
+    : radiance_(factor * scene.environment->radiance),
       turn_(std::cos(scene.environment->rotation), std::sin(scene.environment->rotation)) {
   if (scene.environment->picture) {
     const Image& picture = *scene.environment->picture;

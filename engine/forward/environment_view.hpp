@@ -15,7 +15,8 @@ namespace lucerna {
 
 class EnvironmentView {
  public:
-  EnvironmentView(gl::ProgramLibrary& programs, const Scene& scene);
+  /// `factor`: of its radiance.
+  EnvironmentView(gl::ProgramLibrary& programs, const Scene& scene, const glm::vec3& factor);
 
   static bool isNeeded(const SceneFeatures& features) { return features.environment; }
 

@@ -57,6 +57,8 @@ class Host {
   virtual void pump([[maybe_unused]] double seconds = 0.0) {}
   InputState& input() { return input_; }
   virtual glm::ivec2 framebufferSize() const = 0;
+  /// Whether nobody can see the window. Its framebuffer may keep its size.
+  virtual bool isMinimised() const { return false; }
   virtual void setTitle(const std::string&) {}
 
   // Only in a window; no effect elsewhere.

@@ -75,6 +75,8 @@ class WindowHost final : public Host {
     return size;
   }
 
+  bool isMinimised() const override { return glfwGetWindowAttrib(window_, GLFW_ICONIFIED) == GLFW_TRUE; }
+
   std::optional<int> swapInterval() const override { return swapInterval_; }
   void setTitle(const std::string& title) override { glfwSetWindowTitle(window_, title.c_str()); }
   void setWindowSize(glm::ivec2 size) override { glfwSetWindowSize(window_, std::max(size.x, 1), std::max(size.y, 1)); }
@@ -151,6 +153,7 @@ class WindowHost final : public Host {
       for (int i = 0; i < count; ++i) inputOf(window).drop(files[i]);
     });
     glfwSetWindowRefreshCallback(window_, [](GLFWwindow* window) { inputOf(window).expose(); });
+    glfwSetWindowIconifyCallback(window_, [](GLFWwindow* window, int) { inputOf(window).expose(); });
     glfwSetFramebufferSizeCallback(window_, [](GLFWwindow* window, int, int) { inputOf(window).expose(); });
     glfwSetWindowFocusCallback(window_,
                                [](GLFWwindow* window, int focused) { inputOf(window).focus(focused == GLFW_TRUE); });

@@ -180,7 +180,7 @@ std::vector<glm::dvec3> directLight(gl::ProgramLibrary& programs, const RayScene
   const std::size_t raysOfPatch = static_cast<std::size_t>(parts * parts) * lights;
   const std::size_t patchesEach = std::max<std::size_t>(OcclusionRays::kEach / raysOfPatch, 1);
   for (std::size_t first = 0; first < mesh.patches.size(); first += patchesEach) {
-    StopWatch::check("finding direct light");
+    StopWatch::check("finding direct light", first, mesh.patches.size());
     std::vector<Ray> batch;
     struct Sample {
       std::size_t patch;
@@ -213,7 +213,7 @@ std::vector<std::uint32_t> backsMet(gl::ProgramLibrary& programs, const RayScene
                                                     {{"ALPHA_MASKS", 0}, {"SHARED_STACK", rays.sharedStack()}});
   std::vector<std::uint32_t> met;
   for (std::size_t first = 0; first < segments.size(); first += OcclusionRays::kEach) {
-    StopWatch::check("looking for lit backs");
+    StopWatch::check("looking for lit backs", first, segments.size());
     std::vector<std::array<glm::vec4, 2>> batch;  // origins and directions
     for (const Segment& s : segments.subspan(first, std::min(OcclusionRays::kEach, segments.size() - first)))
       batch.push_back({glm::vec4(glm::vec3(s.from - rays.origin()), 0.0f), glm::vec4(glm::vec3(s.to - s.from), 0.0f)});
@@ -253,7 +253,7 @@ std::vector<glm::dvec3> skyLight(gl::ProgramLibrary& programs, const RayScene& r
   if (environment.picture) bright.emplace(environment);
   const std::size_t toTexels = bright && !bright->empty() ? raysOfPatch / 2 : 0, toAll = raysOfPatch - toTexels;
   for (std::size_t first = 0; first < mesh.patches.size(); first += OcclusionRays::kEach / raysOfPatch) {
-    StopWatch::check("finding the sky's light");
+    StopWatch::check("finding the sky's light", first, mesh.patches.size());
     const std::size_t end = std::min(first + OcclusionRays::kEach / raysOfPatch, mesh.patches.size());
     std::vector<Ray> batch;
     std::vector<glm::dvec3> carried;  // irradiance

@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "base/parallel.hpp"
+#include "base/stop_watch.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +10,9 @@
 namespace lucerna {
 
 namespace {
+
+constexpr const char* kRepairing = "repairing the form factors";
+constexpr std::size_t kRowsBetweenLooks = 1024;
 
 /// A_i F_ij, in the floats in which it is stored.
 float fluxOf(double area, float factor) { return static_cast<float>(area * static_cast<double>(factor)); }
@@ -80,6 +84,7 @@ FormFactorMatrix::SymmetricFlux FormFactorMatrix::symmetricFlux(std::span<const 
   std::vector<std::uint32_t> patches;
   std::vector<float> values;
   for (std::size_t i = 0; i < rowCount(); ++i) {
+    if (i % kRowsBetweenLooks == 0) StopWatch::check(kRepairing, i, rowCount());
     patches.clear();
     values.clear();
     double rowSum = 0.0;
@@ -119,6 +124,7 @@ FormFactorMatrix::Scaling FormFactorMatrix::symmetricScaling(std::span<const dou
   std::vector<double>& d = scaling.d;
   std::vector<double> next = d;
   for (int step = 0; step < kMostSteps; ++step) {
+    StopWatch::check(kRepairing, 0, 0);
     scaling.error = 0.0;
     for (std::size_t i = 0; i < rowCount(); ++i) {
       next[i] = d[i];

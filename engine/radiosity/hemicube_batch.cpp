@@ -130,7 +130,7 @@ HemicubeBatch::HemicubeBatch(const gl::Capabilities& capabilities, const Radiosi
   largeList_ = storage("large patches", 16 + mostListed_ * sizeof(GLuint));
 }
 
-HemicubeBatch::Frame HemicubeBatch::frameOf(int index, int roll) const {
+glm::dmat3 HemicubeBatch::axesOf(int index, int roll) const {
   const Patch& patch = mesh_->patches[static_cast<std::size_t>(index)];
   const auto corners = mesh_->corners(patch);
   // Towards the first corner: never parallel to the normal, whatever the patch.
@@ -138,11 +138,17 @@ HemicubeBatch::Frame HemicubeBatch::frameOf(int index, int roll) const {
   // A hemicube is the same after a quarter of a rotation: several are spaced evenly within it.
   const double rotation = hashed(settings_.seed, static_cast<std::uint32_t>(index)) + 0.25 * roll / rollsOf(settings_);
   const double angle = settings_.randomRoll ? 2.0 * std::numbers::pi * rotation : 0.0;
-  const glm::dvec3 u = std::cos(angle) * u0 + std::sin(angle) * v0, v = glm::cross(patch.faceNormal, u);
+  const glm::dvec3 u = std::cos(angle) * u0 + std::sin(angle) * v0;
+  return {u, glm::cross(patch.faceNormal, u), patch.faceNormal};
+}
+
+HemicubeBatch::Frame HemicubeBatch::frameOf(int index, int roll) const {
+  const Patch& patch = mesh_->patches[static_cast<std::size_t>(index)];
+  const glm::dmat3 axes = axesOf(index, roll);
   const double inPlane = std::max(1e-4 * std::sqrt(patch.area), 4e-7 * mesh_->extent);
   return {glm::vec4(glm::vec3(patch.centroid), static_cast<float>(1.0 / inPlane)),
-          glm::vec4(glm::vec3(u), patch.hidden), glm::vec4(glm::vec3(v), 0.0f),
-          glm::vec4(glm::vec3(patch.faceNormal), 0.0f)};
+          glm::vec4(glm::vec3(axes[0]), patch.hidden), glm::vec4(glm::vec3(axes[1]), 0.0f),
+          glm::vec4(glm::vec3(axes[2]), 0.0f)};
 }
 
 void HemicubeBatch::start(const HemicubeRange& range, int roll) {

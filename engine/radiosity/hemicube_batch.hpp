@@ -36,6 +36,8 @@ class HemicubeBatch {
   const std::vector<std::uint32_t>& smallSources() const { return smallSources_; }
   int smallSourceCount() const { return smallSourceCount_; }
 
+  /// Of a hemicube: u, v and the patch's normal.
+  glm::dmat3 axesOf(int patch, int roll) const;
   /// Binds all buffers, empties the lists and uploads the frames of one roll.
   void start(const HemicubeRange& range, int roll);
   /// Makes a program current, with its uniforms.

@@ -39,6 +39,7 @@ struct HemicubeSettings {
   int mostParts = 8;  ///< most parts per side of a receiver
   /// Loop iterations of a first submission (gl/chunks.hpp). The rows are the same, bit by bit.
   double unmeasuredIterations = gl::kUnmeasuredIterations;
+  double secondsOfChunk = 0.25;  ///< of a submission, after the first; the rows are the same, bit by bit
   std::size_t batchBytes = 0;  ///< of GPU memory per batch and buffer; 0: automatic
 };
 

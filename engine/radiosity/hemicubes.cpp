@@ -3,6 +3,7 @@
 #include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "base/stop_watch.hpp"
 #include "gl/pass.hpp"
 #include "radiosity/hemicube_methods.hpp"
 #include "rays/ray_scene.hpp"
@@ -17,7 +18,6 @@ namespace lucerna {
 namespace {
 
 constexpr int kExactGroups = 256;
-constexpr double kSecondsOfChunk = 0.25;
 constexpr double kIterationsOfPatch = 8.0;  // by raster: a patch's setup
 constexpr double kIterationsOfPixel = 32.0;  // by raster: a pixel's layers
 constexpr int kMeasured = 32;  // hemicubes in a batch for measuring the cost
@@ -62,8 +62,8 @@ Hemicubes::Hemicubes(gl::ProgramLibrary& programs, const gl::Capabilities& capab
                      const HemicubeSettings& settings, const RayScene* rays)
     : settings_(settings),
       rays_(rays),
-      chunks_(kSecondsOfChunk, mostIterationsOfHemicube(mesh, settings.resolution), HemicubeBatch::kMostHemicubes,
-              settings.unmeasuredIterations) {
+      chunks_(settings.secondsOfChunk, mostIterationsOfHemicube(mesh, settings.resolution),
+              HemicubeBatch::kMostHemicubes, settings.unmeasuredIterations) {
   CHECK(settings.resolution >= 2 && settings.resolution % 2 == 0, "hemicubes of {} pixels", settings.resolution);
   if (settings_.visibility == HemicubeVisibility::automatic) {
     costs_ = measure(programs, capabilities, mesh, settings, rays);
@@ -107,6 +107,7 @@ double Hemicubes::millisecondsEach() {
   double best = 0.0;
   for (int k = 0; k < 3; ++k) {
     const int first = static_cast<int>(static_cast<std::int64_t>(patchCount() - count) * k / 2);
+    StopWatch::check("measuring hemicubes", static_cast<std::size_t>(k), 3);
     const auto start = Clock::now();
     draw(first, count, 0);
     const double took = std::chrono::duration<double, std::milli>(Clock::now() - start).count() / count;
@@ -130,6 +131,7 @@ bool Hemicubes::seesAsRaster(gl::ProgramLibrary& programs, const gl::Capabilitie
   Hemicubes raster(programs, capabilities, mesh, settings, rays);
   const double allowed = 0.01 + 4.0 / (3.0 * settings.resolution * settings.resolution);
   for (int k = 0; k < kCompared; ++k) {
+    StopWatch::check("comparing hemicubes", static_cast<std::size_t>(k), kCompared);
     const int patch = static_cast<int>(static_cast<std::int64_t>(drawn.patchCount() - 1) * k / (kCompared - 1));
     if (std::abs(drawn.seenBy(patch) - raster.seenBy(patch)) > allowed) return false;
   }
@@ -198,6 +200,15 @@ DrawnHemicubes Hemicubes::draw(int first, int count, int roll) {
   chunks_.took(static_cast<std::uint32_t>(count), secondsSince(start));
   return drawn;
 }
+
+std::vector<std::uint32_t> Hemicubes::seenByPixels(int patch) {
+  CHECK(listsPatches(visibility()), "pixels by {}", nameOf(visibility()));
+  draw(patch, 1, 0);
+  const auto pixels = static_cast<std::size_t>(3 * settings_.resolution * settings_.resolution);
+  return staging_.read<std::uint32_t>(batch_->pixels().buffer(), pixels);
+}
+
+glm::dmat3 Hemicubes::axesOf(int patch) const { return batch_->axesOf(patch, 0); }
 
 std::vector<DrawnHemicubes> Hemicubes::drawRolls(int first, int count) {
   std::vector<DrawnHemicubes> drawn;

@@ -61,6 +61,10 @@ class Hemicubes {
   /// patches drawn so far; false stops.
   void stream(int first, int end, const std::function<void(const FormFactorRows&)>& take,
               const std::function<bool(int done)>& goOn = {});
+  /// What each pixel of a patch's first hemicube sees, in the layout of shaders/radiosity/hemicube.glsl: the patch + 1,
+  /// or 0. Not by raster, whose pixels name no patches.
+  std::vector<std::uint32_t> seenByPixels(int patch);
+  glm::dmat3 axesOf(int patch) const;  ///< of that hemicube: u, v and the patch's normal
   std::size_t gpuBytes() const;  ///< of the chosen method
 
  private:

@@ -57,7 +57,7 @@ std::vector<PartMet> metFromParts(gl::ProgramLibrary& programs, const RayScene& 
   seen.reserve(patches.size() * kParts * raysEach);
   const std::size_t patchesEach = kRaysASubmission / (kParts * raysEach);
   for (std::size_t first = 0; first < patches.size(); first += patchesEach) {
-    StopWatch::check("looking for hidden parts of patches");
+    StopWatch::check("looking for hidden parts of patches", first, patches.size());
     std::vector<TestedPatch> tested;
     for (const std::uint32_t p : patches.subspan(first, std::min(patchesEach, patches.size() - first))) {
       auto corners = mesh.corners(mesh.patches[p]);

@@ -45,6 +45,8 @@ struct FormFactors {
   std::size_t hemicubes = 0;  ///< computed, not read from a checkpoint
   double seconds = 0.0;  ///< that those took
 
+  std::size_t entries = 0;  ///< of all rows
+
   std::size_t rowCount() const { return fronts.size(); }
 
   /// Adds the next rows.
@@ -56,14 +58,14 @@ struct FormFactors {
       sums.push_back(std::accumulate(own.begin(), own.end(), 0.0));
       at += count;
     }
+    entries += rows.factors.size();
     fronts.insert(fronts.end(), rows.fronts.begin(), rows.fronts.end());
     backs.insert(backs.end(), rows.backs.begin(), rows.backs.end());
   }
   /// Bytes that the repair will take with `patches` rows, if the rest is like the rows so far.
-  double expectedBytes(std::size_t patches) const {
-    if (!matrix) return 0.0;
-    const double entriesPerRow = static_cast<double>(matrix->entryCount()) / static_cast<double>(rowCount());
-    return entriesPerRow * static_cast<double>(patches) * kBytesPerEntry;
+  double expectedBytes(std::size_t patches) const { return matrix ? expectedEntries(patches) * kBytesPerEntry : 0.0; }
+  double expectedEntries(std::size_t patches) const {
+    return static_cast<double>(entries) / static_cast<double>(rowCount()) * static_cast<double>(patches);
   }
 };
 
@@ -104,6 +106,7 @@ class MeshSolver {
 
   RadiositySolution solve(RadiosityMesh mesh, HemicubeVisibility visibility) const {
     const gl::Capabilities& capabilities = input_.context.capabilities();
+    const Clock::time_point begin = Clock::now();
     report(RadiosityStage::Kind::direct, 0);
     RadiositySolution solution;
     const RayScene rays(sceneOf(mesh), capabilities);
@@ -116,9 +119,14 @@ class MeshSolver {
     Hemicubes hemicubes(input_.programs, capabilities, mesh, hemicubeSettings, &rays);
     solution.visibility = hemicubeSettings.visibility = hemicubes.visibility();
 
+    constexpr double kLong = 5.0;  // seconds
+    if (const double seconds = secondsSince(begin); seconds > kLong)
+      logInfo("radiosity: hierarchy and direct light of {} patches took {:.0f} s; its {} hemicubes follow{}", count_,
+              seconds, count_, input_.checkpoint.empty() ? "" : ", which are kept when it is stopped");
+
     FormFactors factors;
-    const std::unique_ptr<RowFile> file = openCheckpoint(rowsFingerprint(mesh, hemicubeSettings), factors);
-    computeRows(hemicubes, file.get(), factors);
+    std::unique_ptr<RowFile> file = openCheckpoint(rowsFingerprint(mesh, hemicubeSettings), factors);
+    computeRows(hemicubes, file, factors);
 
     const Clock::time_point start = Clock::now();
     RadiositySystem system = systemOf(mesh, solution.direct, solution.fromSky);
@@ -154,12 +162,12 @@ class MeshSolver {
  private:
   /// Reports progress; false: the caller wants it to stop.
   bool report(RadiosityStage::Kind kind, std::size_t done, const RadiosityProgress& progress = {}) const {
-    return !input_.onStage || input_.onStage({kind, input_.refinement, done, count_, progress});
+    return !input_.onStage || input_.onStage({kind, input_.refinement, done, count_, progress, {}});
   }
   [[noreturn]] void stop(const FormFactors& factors) const {
     const std::string file = input_.checkpoint.string();
     throw Stopped(fmt::format("stopped after {} of {} hemicubes{}", factors.rowCount(), count_,
-                              file.empty() ? "" : "; the same command resumes from " + file));
+                              std::filesystem::exists(file) ? "; the same command resumes from " + file : ""));
   }
 
   /// Rows by different methods differ in their last bits, so a checkpoint is continued with the method that began it.
@@ -186,13 +194,15 @@ class MeshSolver {
                                      [&](const FormFactorRows& rows) { add(rows, factors); });
   }
 
-  /// Computes the missing rows, and appends them to the checkpoint.
-  void computeRows(Hemicubes& hemicubes, RowFile* file, FormFactors& factors) const {
+  /// Computes the missing rows, and appends them to the checkpoint, unless it becomes too large.
+  void computeRows(Hemicubes& hemicubes, std::unique_ptr<RowFile>& file, FormFactors& factors) const {
     const Clock::time_point start = Clock::now();
     const std::size_t known = factors.rowCount();
+    const double mostBytes = SolutionWatch::mostBytes(input_.checkpoint);
     bool stopped = false;
     const auto take = [&](const FormFactorRows& rows) {
       add(rows, factors);
+      if (file && factors.rowCount() >= count_ / 100) dropIfTooLarge(file, factors, mostBytes);
       if (file) file->append(rows);
     };
     hemicubes.stream(static_cast<int>(known), static_cast<int>(count_), take, [&](int done) {
@@ -202,6 +212,19 @@ class MeshSolver {
     if (stopped) stop(factors);
     factors.hemicubes = factors.rowCount() - known;
     factors.seconds = secondsSince(start);
+  }
+
+  void dropIfTooLarge(std::unique_ptr<RowFile>& file, const FormFactors& factors, double mostBytes) const {
+    const double bytes = RowFile::kBytesPerEntry * factors.expectedEntries(count_);
+    if (bytes <= mostBytes) return;
+    logWarning(
+        "radiosity: the form factors of {} patches would take {:.0f} GB in {}, more than {:.0f} GB: they are not kept "
+        "there, so a stop loses them{} (radiosity.file=FILE keeps them in FILE.part; a larger radiosity.edge makes "
+        "fewer)",
+        count_, 1e-9 * bytes, input_.checkpoint.parent_path().string(), 1e-9 * mostBytes,
+        factors.matrix ? "" : ", and each product computes them again");
+    file.reset();
+    std::filesystem::remove(input_.checkpoint);
   }
 
   /// Adds rows; drops the matrix once it is clear that it will not fit in memory.

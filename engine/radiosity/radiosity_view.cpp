@@ -29,8 +29,12 @@ RadiositySolution solveOrLoad(const gl::Context& context, gl::ProgramLibrary& pr
   std::filesystem::path checkpoint = settings.file;
   if (!checkpoint.empty()) checkpoint += ".part";
   else checkpoint = SolutionWatch::checkpointOf(scene, settings.solution);
+  RadiositySolutionSettings asked = settings.solution;
+  const double seconds = SolutionWatch::secondsOfChunk(), usual = asked.hemicubes.secondsOfChunk;
+  asked.hemicubes.unmeasuredIterations *= seconds / usual;
+  asked.hemicubes.secondsOfChunk = seconds;
   RadiositySolution solution =
-      solveScene(context, programs, scene, settings.solution, checkpoint, SolutionWatch::innermostOnStage());
+      solveScene(context, programs, scene, asked, checkpoint, SolutionWatch::innermostOnStage());
   if (!settings.file.empty()) saveSolution(settings.file, scene, solution);
   SolutionWatch::solved(checkpoint);
   return solution;

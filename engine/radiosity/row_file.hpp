@@ -26,6 +26,7 @@ class RowFile {
   RowFile(const RowFile&) = delete;
   RowFile& operator=(const RowFile&) = delete;
 
+  static constexpr double kBytesPerEntry = 8.0;  ///< and 12 per row
   /// Rows must follow the previous ones. If the disk is full the file is cut back to its last complete block, and
   /// Error(badInput) is thrown.
   void append(const FormFactorRows& rows);

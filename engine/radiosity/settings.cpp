@@ -1,6 +1,7 @@
 #include "radiosity/settings.hpp"
 
 #include "base/error.hpp"
+#include "base/nearest_words.hpp"
 #include "base/log.hpp"
 
 #include <algorithm>
@@ -38,14 +39,15 @@ void applyRadiosityDeviation(RadiosityDeviations& deviations, std::string_view a
   const auto equals = assignment.find('=');
   const std::string name(assignment.substr(0, equals));
   const std::string_view value = equals == std::string_view::npos ? "" : assignment.substr(equals + 1);
-  if (value != "on" && value != "off") throwBadInput("--deviation {}: expected NAME=on or NAME=off", assignment);
   const auto found =
       std::find_if(kDeviations.begin(), kDeviations.end(), [&](const RadiosityDeviation& d) { return d.name == name; });
   if (found == kDeviations.end()) {
-    std::string known;
-    for (const RadiosityDeviation& d : kDeviations) known += (known.empty() ? "" : ", ") + std::string(d.name);
-    throwBadInput("--deviation {}: unknown; expected one of {}", assignment, known);
+    std::vector<std::string_view> names;
+    for (const RadiosityDeviation& d : kDeviations) names.push_back(d.name);
+    throwBadInput("--deviation {}: unknown; nearest: {} (lucerna info --settings lists all)", assignment,
+                  nearestList(name, names));
   }
+  if (value != "on" && value != "off") throwBadInput("--deviation {}: expected NAME=on or NAME=off", assignment);
   deviations.*found->member = value == "on";
 }
 

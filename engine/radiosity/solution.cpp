@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "radiosity/backs.hpp"
+#include "radiosity/hemicube_map.hpp"
 #include "radiosity/hemicubes.hpp"
 #include "radiosity/mesh_solver.hpp"
 #include "radiosity/row_file.hpp"
@@ -229,16 +230,35 @@ std::map<std::uint32_t, double> weightsAround(const RadiositySolution& solution,
   return weights;
 }
 
-}  // namespace
-
-RadiosityOrigins originsOf(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
-                           const RadiositySolution& solution, const RadiositySolutionSettings& settings,
-                           std::uint32_t patch, const glm::dvec3& corners, bool flat) {
+/// The patches where they were solved.
+RadiosityMesh meshAboutOrigin(const Scene& scene, const RadiositySolution& solution) {
   RadiosityMesh mesh = solution.mesh;
   if (const glm::dvec3 origin = floatingOrigin(scene.bounds); origin != glm::dvec3(0.0)) {
     for (glm::dvec3& point : mesh.points) point -= origin;
     for (Patch& p : mesh.patches) p.centroid -= origin;
   }
+  return mesh;
+}
+
+}  // namespace
+
+HemicubePixels hemicubeOf(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
+                          const RadiositySolution& solution, const RadiositySolutionSettings& settings,
+                          std::uint32_t patch) {
+  const RadiosityMesh mesh = meshAboutOrigin(scene, solution);
+  HemicubeSettings hemicubeSettings = withDeviations(settings).hemicubes;
+  hemicubeSettings.visibility =
+      solution.visibility == HemicubeVisibility::itemBuffer ? solution.visibility : HemicubeVisibility::rays;
+  Hemicubes hemicubes(programs, context.capabilities(), mesh, hemicubeSettings);
+  return {hemicubeSettings.resolution, hemicubes.seenByPixels(static_cast<int>(patch)),
+          deltaFormFactors(hemicubeSettings.resolution, hemicubeSettings.map),
+          hemicubes.axesOf(static_cast<int>(patch)), hemicubeSettings.visibility};
+}
+
+RadiosityOrigins originsOf(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
+                           const RadiositySolution& solution, const RadiositySolutionSettings& settings,
+                           std::uint32_t patch, const glm::dvec3& corners, bool flat) {
+  const RadiosityMesh mesh = meshAboutOrigin(scene, solution);
   HemicubeSettings hemicubeSettings = withDeviations(settings).hemicubes;
   if (hemicubeSettings.visibility == HemicubeVisibility::automatic)
     hemicubeSettings.visibility = visibilityByCount(mesh, hemicubeSettings.resolution);

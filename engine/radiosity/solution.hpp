@@ -6,6 +6,7 @@
 // pixels): README.md.
 #pragma once
 
+#include "base/stop_watch.hpp"
 #include "gl/context.hpp"
 #include "gl/program.hpp"
 #include "radiosity/hemicube_settings.hpp"
@@ -45,6 +46,7 @@ struct RadiosityStage {
   int refinement = 0;
   std::size_t done = 0, total = 0;  ///< patches
   RadiosityProgress solve;
+  LongWork prepares;  ///< what is done before the first form factor
 };
 
 struct RadiositySolution {
@@ -123,6 +125,20 @@ struct RadiosityOrigins {
 RadiosityOrigins originsOf(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
                            const RadiositySolution& solution, const RadiositySolutionSettings& settings,
                            std::uint32_t patch, const glm::dvec3& corners, bool flat);
+
+/// A patch's hemicube, pixel by pixel.
+struct HemicubePixels {
+  int resolution = 0;  ///< pixels per side of the full face
+  std::vector<std::uint32_t> seen;  ///< patch + 1, or 0, in the layout of shaders/radiosity/hemicube.glsl
+  std::vector<double> weights;  ///< of the full face's pixels, then of a half face's: deltaFormFactors()
+  glm::dmat3 axes{1.0};  ///< u, v and the patch's normal
+  HemicubeVisibility visibility = HemicubeVisibility::rays;
+};
+/// As the solution's were drawn, but by rays where those were by raster, whose pixels name no patches: the two differ
+/// within rounding of a pixel's centre.
+HemicubePixels hemicubeOf(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
+                          const RadiositySolution& solution, const RadiositySolutionSettings& settings,
+                          std::uint32_t patch);
 
 /// The patches as a separate scene, three vertices per patch in order, so that gl_VertexID finds a corner's light;
 /// relative to `origin`.

@@ -234,7 +234,7 @@ RadiositySolution loadSolution(const std::filesystem::path& file, const Scene& s
     if (!std::isfinite(sum) || !(from.area >= 0.0) || !(from.fronts >= 0.0f && from.backs >= 0.0f))
       throwBadInput("{}: patch {} has a value that is not finite, or an area or share below 0", file.string(), i);
   }
-  s.progress = {header.products, header.residual, header.errorBound, header.energyBalance};
+  s.progress = {header.products, header.residual, header.errorBound, header.energyBalance, false};
   s.solver = static_cast<RadiositySolver>(header.solver);
   std::uint32_t bit = 1;
   for (const RadiosityDeviation& d : allRadiosityDeviations())

@@ -5,7 +5,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <limits>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 namespace lucerna {
@@ -16,11 +19,18 @@ thread_local SolutionWatch* innermostSolutionWatch = nullptr;
 
 SolutionWatch::SolutionWatch(std::filesystem::path folder, std::function<bool(const RadiosityStage&)> onStage,
                              Rows rows)
+    : SolutionWatch(std::move(folder), std::move(onStage), rows, Limits()) {}
+
+SolutionWatch::SolutionWatch(std::filesystem::path folder, std::function<bool(const RadiosityStage&)> onStage,
+                             Rows rows, const Limits& limits)
     : folder_(std::move(folder)),
       onStage_(std::move(onStage)),
       rows_(rows),
+      limits_(limits),
       outer_(std::exchange(innermostSolutionWatch, this)),
-      prepares_([this] { return !onStage_(RadiosityStage{.kind = RadiosityStage::Kind::direct, .solve = {}}); }) {}
+      prepares_([this](const LongWork& work) {
+        return !onStage_(RadiosityStage{.kind = RadiosityStage::Kind::direct, .solve = {}, .prepares = work});
+      }) {}
 
 SolutionWatch::~SolutionWatch() {
   innermostSolutionWatch = outer_;
@@ -41,6 +51,19 @@ void SolutionWatch::solved(const std::filesystem::path& checkpoint) {
 
 bool SolutionWatch::isKept(const std::filesystem::path& checkpoint) {
   return innermostSolutionWatch && innermostSolutionWatch->kept_.contains(checkpoint);
+}
+
+double SolutionWatch::mostBytes(const std::filesystem::path& checkpoint) {
+  const bool isOwn = innermostSolutionWatch && checkpoint.parent_path() == innermostSolutionWatch->folder_;
+  if (!isOwn) return std::numeric_limits<double>::infinity();
+  std::error_code error;
+  const double free = static_cast<double>(std::filesystem::space(innermostSolutionWatch->folder_, error).available);
+  return error ? innermostSolutionWatch->limits_.mostBytes
+               : std::min(innermostSolutionWatch->limits_.mostBytes, 0.5 * free);
+}
+
+double SolutionWatch::secondsOfChunk() {
+  return innermostSolutionWatch ? innermostSolutionWatch->limits_.secondsOfChunk : Limits().secondsOfChunk;
 }
 
 std::function<bool(const RadiosityStage&)> SolutionWatch::innermostOnStage() {

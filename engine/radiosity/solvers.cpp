@@ -93,9 +93,9 @@ class Solve {
     RadiosityProgress& p = result_.progress;
     const glm::dvec3 mean = meanOf(result_.exitance);
     p.errorBound = boundOf(change, mean);
-    p.residual = p.energyBalance = 0.0;
+    p.residual = residualOf(change, mean);
+    p.energyBalance = 0.0;
     for (int c = 0; c < 3; ++c) {
-      if (mean[c] > 0.0) p.residual = std::max(p.residual, change[c] / mean[c]);
       const double off = emitted[c] > 0.0 ? (emitted[c] - absorbed[c] - escaped[c]) / emitted[c] : 0.0;
       if (std::abs(off) > std::abs(p.energyBalance)) p.energyBalance = off;
     }
@@ -104,10 +104,25 @@ class Solve {
     return wanted && !result_.reached && p.products < settings_.mostProducts;
   }
 
+  /// Between two reports; `change` is an estimate. True: continue.
+  bool goesOn(const glm::dvec3& change, const glm::dvec3& mean) const {
+    RadiosityProgress p = result_.progress;
+    p.errorBound = boundOf(change, mean);
+    p.residual = residualOf(change, mean);
+    p.isEstimate = true;
+    return !settings_.onStep || settings_.onStep(p);
+  }
+
   double error() const { return settings_.error; }
   bool spent() const { return result_.progress.products >= settings_.mostProducts; }
 
  private:
+  static double residualOf(const glm::dvec3& change, const glm::dvec3& mean) {
+    double residual = 0.0;
+    for (int c = 0; c < 3; ++c)
+      if (mean[c] > 0.0) residual = std::max(residual, change[c] / mean[c]);
+    return residual;
+  }
   /// w with (I - rho F) w >= o > 0, from an approximate solution for a right side of 1.
   void boundBySupersolution() {
     Vector w(n_, glm::dvec3(1.0)), image(n_);
@@ -339,7 +354,9 @@ void conjugateGradients(Solve& solve) {
       for (int c = 0; c < 3; ++c) beta[c] = rr[c] > 0.0 && next[c] > 1e-30 * start[c] ? next[c] / rr[c] : 0.0;
       for (std::size_t i = 0; i < n; ++i) p[i] = r[i] + beta * p[i];
       rr = next;
-      if (solve.boundOf(change, solve.meanOf(jacobiStep(s, h))) <= 0.7 * solve.error() || solve.spent()) break;
+      const glm::dvec3 mean = solve.meanOf(jacobiStep(s, h));
+      if (!solve.goesOn(change, mean)) return;
+      if (solve.boundOf(change, mean) <= 0.7 * solve.error() || solve.spent()) break;
       bool alive = false;
       for (int c = 0; c < 3; ++c) alive = alive || (pq[c] > 0.0 && rr[c] > 1e-30 * start[c]);
       if (!alive) break;

@@ -33,6 +33,7 @@ struct RadiosityProgress {
   double residual = 0.0;  ///< max |E + rho F B - B| over the mean exitance
   double errorBound = 0.0;  ///< guaranteed: max |B - exact| over the mean exitance
   double energyBalance = 0.0;  ///< (emitted - absorbed - lost through openings) / emitted
+  bool isEstimate = false;  ///< residual and bound are, while the balance is that of the last report
 };
 
 struct SolverSettings {

@@ -174,9 +174,13 @@ class BinaryBuilder {
   std::uint32_t build(std::vector<Reference> references, std::size_t spare, int depth) {
     // Threads beside this one have no watch of their own: they see its answer.
     constexpr std::size_t kLong = 1024;  // references
-    if (references.size() > kLong && (isStopped_ || StopWatch::wantsStop())) {
-      isStopped_ = true;
-      throw Stopped("stopped while building the ray hierarchy; nothing of it is kept");
+    if (references.size() > kLong) {
+      constexpr const char* kWhat = "building the ray hierarchy";
+      if (isStopped_ ||
+          StopWatch::wantsStop({kWhat, static_cast<double>(used_) / static_cast<double>(nodes_.size())})) {
+        isStopped_ = true;
+        throw Stopped(std::string("stopped while ") + kWhat + "; nothing of it is kept");
+      }
     }
     const std::uint32_t index = used_++;
     BinaryNode& node = nodes_[index];

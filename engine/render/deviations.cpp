@@ -1,6 +1,7 @@
 #include "render/deviations.hpp"
 
 #include "base/error.hpp"
+#include "base/nearest_words.hpp"
 #include "render/techniques.hpp"
 
 #include <algorithm>
@@ -28,7 +29,6 @@ void applyDeviation(RenderSettings& settings, std::string_view assignment) {
   const auto equals = assignment.find('=');
   const std::string name(assignment.substr(0, equals));
   const std::string_view value = equals == std::string_view::npos ? "" : assignment.substr(equals + 1);
-  if (value != "on" && value != "off") throwBadInput("--deviation {}: expected NAME=on or NAME=off", assignment);
   if (name == "radiosity.24-bit")
     throwBadInput(
         "--deviation {}: only the published solver has 24-bit values; use lucerna radiosity solve --fidelity original",
@@ -36,10 +36,12 @@ void applyDeviation(RenderSettings& settings, std::string_view assignment) {
   const std::vector<Deviation> all = allDeviations();
   const auto found = std::find_if(all.begin(), all.end(), [&](const Deviation& d) { return d.name == name; });
   if (found == all.end()) {
-    std::string known;
-    for (const Deviation& d : all) known += (known.empty() ? "" : ", ") + std::string(d.name);
-    throwBadInput("--deviation {}: unknown; expected one of {}", assignment, known);
+    std::vector<std::string_view> names;
+    for (const Deviation& d : all) names.push_back(d.name);
+    throwBadInput("--deviation {}: unknown; nearest: {} (lucerna info --settings lists all)", assignment,
+                  nearestList(name, names));
   }
+  if (value != "on" && value != "off") throwBadInput("--deviation {}: expected NAME=on or NAME=off", assignment);
   found->turn(settings, value == "on");
 }
 

@@ -7,6 +7,7 @@
 #include "rsm/lamp_choice.hpp"
 #include "scene/coat.hpp"
 #include "scene/place.hpp"
+#include "scene/studio.hpp"
 #include "shared/bindings.h"
 
 #include <fmt/ranges.h>
@@ -113,8 +114,15 @@ void Renderer::makeLights(const gl::Context& context, gl::ProgramLibrary& progra
   if (!technique_ && technique.drawsSurfaces && technique.isNeeded(settings_, features_))
     technique_ = technique.make(parts(context, programs, scene));
   if (EnvironmentView::isNeeded(features_) && settings_.component != Component::indirect)
-    environmentView_.emplace(programs, scene);
+    environmentView_.emplace(programs, scene, shownSky(scene));
   loadPrograms(programs);
+}
+
+// Factor of the environment behind surfaces. A technique that the sky does not light draws the studio's floor without
+// that light: its sky begins in that colour, so that no horizon is seen.
+glm::vec3 Renderer::shownSky(const Scene& scene) const {
+  const bool isLit = techniqueNamed(settings_.technique).model(settings_).environmentAndEmission;
+  return scene.studio && !isLit ? studioSunShare() : glm::vec3(1.0f);
 }
 
 // Which lamps have shadow maps.
@@ -165,41 +173,39 @@ bool Renderer::follow(const gl::Context& context, gl::ProgramLibrary& programs, 
   return true;
 }
 
-void Renderer::warnOfWhatIsLeftOut(const TechniqueEntry& technique) const {
+void Renderer::warnOfWhatIsLeftOut(const TechniqueEntry& technique) {
+  const auto warn = [&](const std::string& what) {
+    warnings_.push_back(fmt::format("technique {}: {}", technique.name, what));
+    logWarning("{}", warnings_.back());
+  };
   const bool lacksLight = !technique.model(settings_).environmentAndEmission;
+  const std::string lit = fmt::format("{} support it", fmt::join(environmentTechniques(), ", "));
   if (features_.emission && !features_.anyLight() && lacksLight)
-    logWarning(
-        "technique {}: emissive surfaces light nothing, and nothing else does, so all but them is black ({} support "
-        "it)",
-        technique.name, fmt::join(environmentTechniques(), ", "));
+    warn("emissive surfaces light nothing, and nothing else does, so all but them is black (" + lit + ")");
   const gl::ShaderFlags flags = technique_ ? technique_->surfaceFlags() : gl::ShaderFlags{};
   const bool reflects = std::ranges::count(flags, std::pair<std::string, int>("INDIRECT_SPECULAR", 1)) > 0;
   const std::vector<std::string> reflecting = namesOfDrawn(gpuScene_->scene(), isMostlyReflection);
   if (!reflects && settings_.component != Component::direct && !reflecting.empty())
-    logWarning(
-        "technique {}: what surfaces reflect or let through is left out{}: {} (irradiance-cache and path draw it)",
-        technique.name, geometry_ ? ", they look matt" : ", but lamps' highlights", fmt::join(reflecting, ", "));
+    warn(fmt::format("what surfaces reflect or let through is left out{}: {} (irradiance-cache and path draw it)",
+                     geometry_ ? ", they look matt" : ", but lamps' highlights", fmt::join(reflecting, ", ")));
   const std::vector<std::string> bodies = namesOfDrawn(gpuScene_->scene(), [](const Material& material) {
     return material.bsdf == Bsdf::dielectric && material.interior >= 0;
   });
   if (!bodies.empty() && technique_ && technique_->previewsMedia())
-    logWarning("technique {}: media are a preview, which scatter as surfaces do: {} (path draws them as they are)",
-               technique.name, fmt::join(bodies, ", "));
+    warn(fmt::format("media are a preview, which scatter as surfaces do: {} (path draws them as they are)",
+                     fmt::join(bodies, ", ")));
   else if (!bodies.empty())
-    logWarning(
-        "technique {}: the medium inside of a body, its colour too, is left out: {} (irradiance-cache previews it, "
-        "path "
-        "draws it)",
-        technique.name, fmt::join(bodies, ", "));
+    warn(
+        fmt::format("the medium inside of a body, its colour too, is left out: {} (irradiance-cache previews it, path "
+                    "draws it)",
+                    fmt::join(bodies, ", ")));
   const std::vector<std::string> boundaries = namesOfDrawn(gpuScene_->scene(), [](const Material& material) {
     return material.bsdf == Bsdf::none && material.interior >= 0;
   });
   if (settings_.textures.boundaries && !boundaries.empty())
-    logWarning("technique {}: the boundary of a medium is drawn, and matt: {} (path draws the medium)", technique.name,
-               fmt::join(boundaries, ", "));
-  if (features_.environment && lacksLight)
-    logWarning("technique {}: the environment lights nothing ({} support it)", technique.name,
-               fmt::join(environmentTechniques(), ", "));
+    warn(fmt::format("the boundary of a medium is drawn, and matt: {} (path draws the medium)",
+                     fmt::join(boundaries, ", ")));
+  if (features_.environment && lacksLight) warn("the environment lights nothing (" + lit + ")");
 }
 
 FrameParts Renderer::parts(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene) {

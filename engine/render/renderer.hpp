@@ -96,6 +96,9 @@ class Renderer {
   double largestIterations() const;
   /// Waits for all pending results, times and counts; for the end of a run, not for a frame.
   void drain();
+  /// What of the scene the technique does not draw, or draws as something else, with the names of materials. They were
+  /// logged, too.
+  const std::vector<std::string>& warnings() const { return warnings_; }
   /// Names of the omitted features.
   std::vector<std::string> leftOut() const;
 
@@ -103,6 +106,7 @@ class Renderer {
   const Scene& aboutOrigin(const Scene& scene);  ///< makes moved_ if it must be moved
   FrameParts parts(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene);
   void makeLights(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene);
+  glm::vec3 shownSky(const Scene& scene) const;
   void chooseLamps(gl::ProgramLibrary& programs);
   void makeShadowMaps(gl::ProgramLibrary& programs);
   void loadPrograms(gl::ProgramLibrary& programs);
@@ -127,12 +131,13 @@ class Renderer {
   InspectedTerms drawInspected(gl::ProgramLibrary& programs, const FrameView& view, glm::ivec2 fromBelow);
   void addDirectShares(const InspectedTerms& terms, PixelInspection& answer);
   std::span<const GeometryTechnique::Sides> sides() const;
-  void warnOfWhatIsLeftOut(const TechniqueEntry& technique) const;
+  void warnOfWhatIsLeftOut(const TechniqueEntry& technique);
   bool showsDirect() const;  ///< direct light of sun or lamps, with shadows
   int rayShadowedLamps() const;  ///< the first of localLights_'s lamps
 
   RenderSettings settings_;
   std::uint64_t frames_ = 0;
+  std::vector<std::string> warnings_;
   SceneFeatures features_;
   glm::dvec3 origin_;  ///< of the drawn coordinates, in the scene's coordinates
   std::optional<Scene> moved_;  ///< the scene relative to it, if it is not 0

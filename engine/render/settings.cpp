@@ -96,7 +96,7 @@ SettingAssignment parseAssignment(std::string_view assignment, std::string_view 
   for (const Setting& s : allSettings())
     if (!only || s.cost == *only) keys.push_back(s.key);
   throwBadInput("{}{}: unknown key; nearest: {} (lucerna info --settings lists all)", where, assignment,
-                fmt::join(nearestWords(assignment.substr(0, equals), keys), ", "));
+                nearestList(assignment.substr(0, equals), keys));
 }
 
 namespace {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/error.hpp"
+#include "base/nearest_words.hpp"
 
 #include <glm/glm.hpp>
 #include <nlohmann/json.hpp>
@@ -130,10 +131,10 @@ inline void readObject(const Value& object, const std::vector<Key>& keys) {
     const std::string& name = member.key();
     const auto key = std::find_if(keys.begin(), keys.end(), [&](const Key& k) { return k.name == name; });
     if (key == keys.end()) {
-      std::string known;
-      for (const Key& k : keys) known += fmt::format("{}{}", known.empty() ? "" : ", ", k.name);
-      throwBadInput("{}: unknown key \"{}\"; expected one of {}", object.file.string(),
-                    object.key.empty() ? name : fmt::format("{}.{}", object.key, name), known);
+      std::vector<std::string_view> known;
+      for (const Key& k : keys) known.push_back(k.name);
+      throwBadInput("{}: unknown key \"{}\"; nearest: {} (docs/commands.md)", object.file.string(),
+                    object.key.empty() ? name : fmt::format("{}.{}", object.key, name), nearestList(name, known));
     }
     key->read(object.at(name));
   }

@@ -19,6 +19,7 @@ constexpr double kWidthOverHeight = 16.0 / 9.0;
 constexpr double kBoxFill = 0.95;  ///< into an open box: its opening is the frame
 const glm::dvec3 kThreeSides = -glm::normalize(glm::dvec3(0.5, 0.35, 1.0));
 constexpr double kSunSlope = 1.49;  ///< downwards over horizontally
+const glm::dvec3 kZenith(0.42, 0.47, 0.55);  ///< of the sky, over its horizon
 constexpr double kFloorRadius = 4.0;  ///< over that of the scene, about its vertical axis
 constexpr int kFloorCorners = 96;
 
@@ -125,11 +126,12 @@ glm::dvec3 studioSun(const Camera& camera) {
 // Radiance at elevation asin(s): G + (Z - G) f, f = 3 s^2 - 2 s^3, of the floor's G and the zenith's Z = kZenith G. The
 // sky's irradiance is 2 pi (int_0^1 (1 - f) s ds G + int_0^1 f s ds Z) = 2 pi (0.15 G + 0.35 Z), and
 // G = albedo / pi (sun + sky).
+glm::vec3 studioSunShare() { return {1.0 - 2.0 * static_cast<double>(kFloorAlbedo) * (0.15 + 0.35 * kZenith)}; }
+
 Image studioSky(const DirectionalLight& sun, int height) {
-  const glm::dvec3 kZenith(0.42, 0.47, 0.55);
   const glm::dvec3 ofSun = -sun.direction.y * glm::dvec3(sun.irradiance);
   const double albedo = static_cast<double>(kFloorAlbedo);
-  const glm::dvec3 floor = albedo / kPi * ofSun / (1.0 - 2.0 * albedo * (0.15 + 0.35 * kZenith));
+  const glm::dvec3 floor = albedo / kPi * ofSun / glm::dvec3(studioSunShare());
   Image picture(2 * height, height, glm::vec3(floor));
   for (int row = 0; row < height / 2; ++row) {
     const double s = std::cos(kPi * (row + 0.5) / height), f = s * s * (3.0 - 2.0 * s);

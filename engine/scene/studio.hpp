@@ -24,6 +24,9 @@ glm::dvec3 studioSun(const Camera& camera);
 /// smoothly half of that in the zenith. The floor is lit by sun and sky, which is lit by the floor, in closed form.
 Image studioSky(const DirectionalLight& sun, int height = 128);
 
+/// Share of the sun in the light of the unshadowed floor; the rest is the sky's.
+glm::vec3 studioSunShare();
+
 /// Whether what emits is outside of everything, as pilot lamps of a model are: the middle of the scene is not enclosed,
 /// and less than a third of the emitted light meets a surface.
 bool glowsOutwards(const Scene& scene);

@@ -76,7 +76,28 @@ TEST_F(CommandLine, HelpOfACommandIsItsOptions) {
   }
   const RunResult unknown = RUN_LUCERNA("help rendr");
   EXPECT_EQ(unknown.exitCode, 2);
-  EXPECT_NE(unknown.err.find("rendr: no such command"), std::string::npos) << unknown.err;
+  EXPECT_NE(unknown.err.find("rendr: no such command; nearest: render, "), std::string::npos) << unknown.err;
+}
+
+TEST_F(CommandLine, WrongWordsNameTheNearest) {
+  for (const auto& [words, nearest] :
+       {std::pair<std::string, std::string>{"rendr", "rendr: no such subcommand; nearest: render, "},
+        {"radiosity slove", "slove: no such subcommand; nearest: solve, "},
+        {"bench eror", "eror: no such subcommand; nearest: error, "},
+        {"bench tabels", "tabels: no such subcommand; nearest: tables, "},
+        {"lab chek", "chek: no such subcommand; nearest: check, "},
+        {"info --jsno a", "--jsno: no such option; nearest: --json, "},
+        {"--hepl", "--hepl: no such option; nearest: --help, "},
+        {"render " + scene() + " -o " + path("y.pfm") + " --deviation lpv.truncat=on",
+         "lpv.truncat=on: unknown; nearest: lpv.truncate, "},
+        {"radiosity solve " + scene() + " " + path("y.sol") + " --deviation centroid=on",
+         "centroid=on: unknown; nearest: radiosity.centroid, "},
+        {"walk corn", "no shipped scene; nearest: cornell, "}}) {
+    const RunResult result = RUN_LUCERNA(words);
+    EXPECT_EQ(result.exitCode, 2) << words;
+    EXPECT_NE(result.err.find(nearest), std::string::npos) << words << ": " << result.err;
+    EXPECT_LT(result.err.size(), nearest.size() + 160) << result.err;
+  }
 }
 
 TEST_F(CommandLine, OptionsOfTheEnvironmentFollowThoseOfTheCommand) {
@@ -184,9 +205,28 @@ TEST_F(CommandLine, DeviationsAreReported) {
   expectRefused("render " + scene() + " --fidelity faithful -o " + path("y.pfm"), 2, {"faithful", "thesis", "demo"},
                 "y.pfm");
   expectRefused("render " + scene() + " --deviation lpv.nothing=on -o " + path("y.pfm"), 2,
-                {"lpv.nothing", "lpv.side-directions"}, "y.pfm");
+                {"lpv.nothing", "nearest: lpv."}, "y.pfm");
   expectRefused("render " + scene() + " --deviation lpv.truncate=maybe -o " + path("y.pfm"), 2,
                 {"lpv.truncate=maybe", "=on or"}, "y.pfm");
+}
+
+// Beside a box the floor goes over into the sky without a step, whether the sky lights the floor or not.
+TEST_F(CommandLine, TheStudiosFloorFadesIntoItsSky) {
+  std::ofstream(path("box.obj")) << "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nv -1 2 -1\nv 1 2 -1\nv 1 2 1\nv -1 2 1\n"
+                                    "f 1 2 3 4\nf 5 8 7 6\nf 1 5 6 2\nf 4 3 7 8\nf 1 4 8 5\nf 2 6 7 3\n";
+  for (const std::string technique : {"direct", "lpv", "irradiance-cache"}) {
+    const RunResult result = RUN_LUCERNA("render " + path("box.obj") + " --technique " + technique +
+                                         " --size 96x54 --pixel-samples 1 -o " + path("box.pfm"));
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    const lucerna::Image picture = lucerna::readImage(path("box.pfm"));
+    for (const int column : {1, 94})
+      for (int row = 0; row + 1 < picture.height; ++row) {
+        const auto at = static_cast<std::size_t>(row * picture.width + column);
+        const float upper = picture.pixels[at].y,
+                    lower = picture.pixels[at + static_cast<std::size_t>(picture.width)].y;
+        EXPECT_NEAR(upper / lower, 1.0f, technique == "lpv" ? 0.06f : 0.02f) << technique << " row " << row;
+      }
+  }
 }
 
 TEST_F(CommandLine, WalkWritesPicturesAndStageTimes) {

@@ -210,6 +210,72 @@ TEST_F(RadiositySolutions, OtherLightNeedsNoHemicubesWhereRowsAreKept) {
   EXPECT_EQ(folder.listing(), "");
 }
 
+// Rows that would fill more of the disk than they may are not kept, and the solution is the same.
+TEST_F(RadiositySolutions, RowsOfTheWatchHaveALimit) {
+  const test::TempFolder folder;
+  const Scene scene = test::openBox();
+  RadiosityView::Settings settings;
+  settings.solution.patches.longestEdge = 2.5;
+  settings.solution.hemicubes.resolution = 32;
+  settings.solution.hemicubes.visibility = HemicubeVisibility::raster;
+  const RadiosityView alone(context(), library(), scene, settings);
+  const auto bytesWith = [&](double mostBytes) {
+    const SolutionWatch watch(folder.path(), [](const RadiosityStage&) { return true; }, SolutionWatch::Rows::keep,
+                              {.secondsOfChunk = 0.01, .mostBytes = mostBytes});
+    const RadiosityView view(context(), library(), scene, settings);
+    EXPECT_TRUE(view.solution().exitance == alone.solution().exitance);
+    std::uintmax_t bytes = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path())) bytes += entry.file_size();
+    return bytes;
+  };
+  const std::uintmax_t all = bytesWith(1e9);
+  EXPECT_GT(all, 1000u);
+  EXPECT_EQ(bytesWith(0.1 * static_cast<double>(all)), 0u);
+}
+
+// Each pixel's patch against the first triangle on its ray, found in double precision; weights sum to 1.
+TEST_F(RadiositySolutions, AHemicubesPixelsShowTheFirstPatchOnTheirRays) {
+  const Scene scene = test::openBox();
+  RadiositySolutionSettings settings;
+  settings.patches.longestEdge = 2.0;
+  settings.hemicubes.resolution = 16;
+  const RadiositySolution s = solve(scene, settings);
+  const std::vector<Patch>& patches = s.mesh.patches;
+  const std::uint32_t patch = static_cast<std::uint32_t>(patches.size()) / 2;
+  const HemicubePixels cube = hemicubeOf(context(), library(), scene, s, settings, patch);
+  ASSERT_EQ(cube.seen.size(), 3u * 16 * 16);
+  const auto distanceTo = [&](std::uint32_t p, const glm::dvec3& direction) {
+    const auto c = s.mesh.corners(patches[p]);
+    const glm::dmat3 m(c[1] - c[0], c[2] - c[0], -direction);
+    if (p == patch || std::abs(glm::determinant(m)) < 1e-12) return 1e300;
+    const glm::dvec3 x = glm::inverse(m) * (patches[patch].centroid - c[0]);
+    return x.x < 0.0 || x.y < 0.0 || x.x + x.y > 1.0 || x.z < 1e-6 ? 1e300 : x.z;
+  };
+  // A sheet's two patches are in one place.
+  const auto isFirst = [&](std::uint32_t seen, const glm::dvec3& direction) {
+    double nearest = 1e300;
+    for (std::uint32_t p = 0; p < patches.size(); ++p) nearest = std::min(nearest, distanceTo(p, direction));
+    return seen == 0 ? nearest == 1e300 : distanceTo(seen - 1, direction) < 1.000001 * nearest && nearest < 1e300;
+  };
+  std::size_t pixel = 0, agree = 0;
+  double sum = 0.0, fronts = 0.0;
+  for (int face = 0; face < 5; ++face)
+    for (int row = 0; row < (face == 0 ? 16 : 8); ++row)
+      for (int column = 0; column < 16; ++column, ++pixel) {
+        const double a = (column + 0.5) / 8.0 - 1.0, b = (row + 0.5) / 8.0 - (face == 0 ? 1.0 : 0.0);
+        const glm::dvec3 local[] = {{a, b, 1.0}, {1.0, a, b}, {-a, 1.0, b}, {-1.0, -a, b}, {a, -1.0, b}};
+        agree += isFirst(cube.seen[pixel], cube.axes * local[face]);
+        const std::size_t inMap = face == 0 ? pixel : static_cast<std::size_t>(256 + row * 16 + column);
+        sum += cube.weights[inMap];
+        if (cube.seen[pixel] == 0) continue;
+        const Patch& other = patches[cube.seen[pixel] - 1];
+        if (glm::dot(patches[patch].centroid - other.centroid, other.faceNormal) > 0.0) fronts += cube.weights[inMap];
+      }
+  EXPECT_GE(agree, pixel - pixel / 100) << "of " << pixel << ", but for edges";
+  EXPECT_NEAR(sum, 1.0, 1e-12);
+  EXPECT_NEAR(fronts, static_cast<double>(s.fronts[patch]), 0.02);
+}
+
 TEST_F(RadiositySolutions, FilesGiveBackWhatWasSaved) {
   const test::TempFolder folder;
   Scene scene = dark(cubeRoom(2, 0.7, 1.0));

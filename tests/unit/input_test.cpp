@@ -71,6 +71,17 @@ TEST(Input, TextComesAfterTheClickAndAroundEditingKeys) {
   EXPECT_EQ(order, "press ab<c");
 }
 
+TEST(Input, TextComesAfterAnEditingKeyThatIsHeld) {
+  InputState state;
+  state.key(key::kBackspace, true);
+  state.text("c");
+  const std::vector<HostInput> steps = stepsOf(state);
+  ASSERT_EQ(steps.size(), 2u);
+  EXPECT_EQ(steps[0].keys.size(), 1u);
+  EXPECT_EQ(steps[0].text, "");
+  EXPECT_EQ(steps[1].text, "c");
+}
+
 TEST(Input, TwoClicksKeepTheirPlaces) {
   InputState state;
   for (const double x : {10.0, 50.0}) {

@@ -161,7 +161,7 @@ TEST(SceneFile, WhatIsWrongIsNamedByFileAndKey) {
   const SceneFolder folder;
   const std::string camera = R"(, "camera": {"position": [0,0,5], )";
   const std::vector<std::pair<std::string, std::string>> cases = {
-      {R"(, "modell": 1)", "unknown key \"modell\"; expected one of description, model, scale"},
+      {R"(, "modell": 1)", "unknown key \"modell\"; nearest: model, "},
       {R"(, "sun": {"direction": [0,-1,0], "irradiance": [1,1,1], "colour": 1})", "\"sun.colour\""},
       {camera + R"("direction": [0,0,-1], "zoom": 2})", "\"camera.zoom\""},
       {R"(, "scale": "10")", "\"scale\""},

@@ -51,7 +51,7 @@ TEST(StopWatch, AHierarchyEndsWhereAStopIsWanted) {
   }
   int asked = 0;
   {
-    const StopWatch watch([&] { return ++asked > 3; });
+    const StopWatch watch([&](const LongWork& work) { return ++asked > 3 || work.share > 0.9; });
     EXPECT_THROW(buildBvh(builder.scene()), Stopped);
   }
   EXPECT_EQ(asked, 4);

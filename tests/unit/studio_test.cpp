@@ -109,6 +109,12 @@ TEST(Studio, PilotLampsAreNoLightButWhatShinesOnSomethingIs) {
   lampOverFloor.plate({0, 0, 0}, {0, 0, 6}, {6, 0, 0}, grey);
   lampOverFloor.plate({0, 1, 0}, {1, 0, 0}, {0, 0, 1}, grey);
   EXPECT_FALSE(glowsOutwards(lit(lampOverFloor.scene(), 1)));
+  // Two thirds of its light meet a plate that hides less than half of what the middle sees.
+  SceneBuilder lampOverPlate;
+  const int white = lampOverPlate.material(glm::vec3(0.5f));
+  lampOverPlate.plate({-0.8, 0, -0.8}, {0, 0, 1.6}, {1.6, 0, 0}, white);
+  lampOverPlate.plate({-0.1, 0.5, -0.1}, {0.2, 0, 0}, {0, 0, 0.2}, white);
+  EXPECT_FALSE(glowsOutwards(lit(lampOverPlate.scene(), 1)));
 }
 
 TEST(Studio, TheFloorIsBelowAndSurvivesMotion) {

@@ -5,6 +5,7 @@ import math
 from . import gems, smoke, vessels
 from .mesh import Part, backdrop, box, mul, quad, rotation, softbox, sub, unit, write
 
+LOWERED_IOR = 1.1  # of figures 5.12 to 5.15
 CATALOGUE = {  # as published: sigma_s, sigma_a, g, ior
     "milk": ((18.2052, 20.3826, 22.3698), (0.00153, 0.0046, 0.01993), (0.75, 0.714, 0.681), 1.33),
     "espresso": ((7.78262, 8.1305, 8.53875), (4.79838, 6.57512, 8.84925), (0.907, 0.896, 0.88), 1.33),
@@ -174,6 +175,12 @@ def build_block(folder, paths):
         write_scene(folder, stem, scene)
         write_scene(folder, f"{stem}_original", original(view, (-22.2, 27.0, -15.4), (1, 0.94, 0.85), 5.4 * 32 * 32,
                                                          {"block": CATALOGUE[medium]}))
+    # Figure 5.12 b, the milk's scattering over 100, in a block of a quarter of the size: a slight haze.
+    scattering, absorption, g, _ = CATALOGUE["milk"]
+    haze = original(view, (-22.2, 27.0, -15.4), (1, 0.94, 0.85), 5.4 * 32 * 32,
+                    {"block": ([round(s / 100, 6) for s in scattering], absorption, g, LOWERED_IOR)})
+    haze["scene"]["scale"] = 0.25
+    write_scene(folder, "milk_haze_original", haze)
     walk(paths / "block.txt", "Round the block", (0.0, 5.5, 0.0), view["position"], 120, 5, 0.3, 30)
     return count
 
