@@ -41,7 +41,8 @@ class PathTracer {
     std::uint32_t bounces = kUnlimited;  ///< maximum number of scatterings; below kUnlimited longer paths are missing
     bool diffuseOnly =
         false;  ///< treat every scattering surface as Lambert with its `diffuse`, as forward shading does
-    bool walks = true;  ///< no rays in dense media where no triangle is near; the picture is the same, bit by bit
+    bool walks = true;  ///< no rays in dense media where no triangle is near; the picture is the same, bit by bit,
+                        ///< but where lamps are sought through boundaries: there nothing walks
     bool nextEvent = true;  ///< sample lights directly; without it only lights that rays can hit contribute
     PixelFilter filter = PixelFilter::box;  ///< of camera rays
     std::uint32_t seed = 0;  ///< pictures of different seeds are independent

@@ -75,14 +75,13 @@ TEST_F(PathWalkTest, ShadowRaysEndHoweverFarABoundLiesAboveTheDensity) {
 }
 
 TEST_F(PathWalkTest, WalksAreThePathsThatTraceEveryFlight) {
-  // Also with lamps in the room, a body in the milk that absorbs, and a shell of glass around that overlaps it.
+  // Also with a lamp in the room, a body in the milk that absorbs, and a shell of glass around that overlaps it.
   Scene scene = milkBall(1.33);
   addSphere(scene, glm::dvec3(0.0), 1.2, 3, addBoundary(scene, Bsdf::dielectric, 1.5, -1, -1));
   scene.materials.emplace_back().diffuse = glm::vec3(0.5f);
   addBox(scene, glm::dvec3(-0.1), glm::dvec3(0.2), static_cast<int>(scene.materials.size()) - 1);
   scene.materials.emplace_back().emission = glm::vec3(20.0f);
   addBox(scene, {2.0, 2.0, 1.0}, {2.2, 2.3, 1.5}, static_cast<int>(scene.materials.size()) - 1);
-  scene.points.push_back({{0.0, 3.0, 3.0}, glm::vec3(9.0f)});
   PathTracer::Settings settings;
   settings.size = {24, 24};
   PathTracer walking(context(), library(), scene, settings);
