@@ -118,6 +118,8 @@ struct TechniqueEntry {
   std::unique_ptr<FrameTechnique> (*make)(const FrameParts&);
 
   // Where the defaults are not right.
+  bool drawsReflections = false;  ///< what surfaces reflect and let through, besides lamps' highlights
+  enum class Media { none, preview, all } media = Media::none;  ///< inside of bodies and boundaries
   bool drawsSurfaces = true;  ///< false: make() gives a GeometryTechnique or PictureTechnique, before the GpuScene
   /// Whether it reflects light of the lamps' maps.
   bool (*readsLightMaps)(const RenderSettings&, const SceneFeatures&) = nullptr;

@@ -72,6 +72,8 @@ TechniqueEntry technique() {
           .model = cacheModel,
           .isNeeded = IrradianceCacheFrame::isNeeded,
           .make = makeCache,
+          .drawsReflections = true,
+          .media = TechniqueEntry::Media::preview,
           .readsLightMaps = IrradianceCacheFrame::takesMaps,
           .prepare = IrradianceCacheFrame::prepare};
 }

@@ -65,6 +65,8 @@ TechniqueEntry technique() {
           .model = pathModel,
           .isNeeded = [](const RenderSettings&, const SceneFeatures&) { return true; },
           .make = makePaths,
+          .drawsReflections = true,
+          .media = TechniqueEntry::Media::all,
           .drawsSurfaces = false};
 }
 

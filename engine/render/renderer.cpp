@@ -14,6 +14,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <algorithm>
+#include <functional>
 #include <array>
 #include <cmath>
 #include <iterator>
@@ -48,11 +49,12 @@ glm::dmat4 clipFromWorld(const Camera& camera, const Bounds& bounds, glm::ivec2 
   return clipFromView * glm::lookAt(camera.position, camera.position + camera.direction, camera.up);
 }
 
-std::vector<std::string_view> environmentTechniques() {
+/// Names of the techniques of which it is true, for messages.
+std::string techniquesThat(const std::function<bool(const TechniqueEntry&)>& holds) {
   std::vector<std::string_view> names;
   for (const TechniqueEntry& technique : allTechniques())
-    if (technique.model({}).environmentAndEmission) names.push_back(technique.name);
-  return names;
+    if (holds(technique)) names.push_back(technique.name);
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 /// Names of the drawn materials of a kind.
@@ -179,32 +181,36 @@ void Renderer::warnOfWhatIsLeftOut(const TechniqueEntry& technique) {
     logWarning("{}", warnings_.back());
   };
   const bool lacksLight = !technique.model(settings_).environmentAndEmission;
-  const std::string lit = fmt::format("{} support it", fmt::join(environmentTechniques(), ", "));
+  using Media = TechniqueEntry::Media;
+  const std::string lit = techniquesThat(
+                              [](const TechniqueEntry&t) { return t.model(RenderSettings{}).environmentAndEmission; }) +
+                          " support it",
+                    draws = techniquesThat([](const TechniqueEntry&t) { return t.media == Media::all; }),
+                    previews = techniquesThat([](const TechniqueEntry&t) { return t.media == Media::preview; });
   if (features_.emission && !features_.anyLight() && lacksLight)
     warn("emissive surfaces light nothing, and nothing else does, so all but them is black (" + lit + ")");
   const gl::ShaderFlags flags = technique_ ? technique_->surfaceFlags() : gl::ShaderFlags{};
   const bool reflects = std::ranges::count(flags, std::pair<std::string, int>("INDIRECT_SPECULAR", 1)) > 0;
   const std::vector<std::string> reflecting = namesOfDrawn(gpuScene_->scene(), isMostlyReflection);
   if (!reflects && settings_.component != Component::direct && !reflecting.empty())
-    warn(fmt::format("what surfaces reflect or let through is left out{}: {} (irradiance-cache and path draw it)",
-                     geometry_ ? ", they look matt" : ", but lamps' highlights", fmt::join(reflecting, ", ")));
+    warn(fmt::format("what surfaces reflect or let through is left out{}: {} ({} draw it)",
+                     geometry_ ? ", they look matt" : ", but lamps' highlights", fmt::join(reflecting, ", "),
+                     techniquesThat([](const TechniqueEntry& t) { return t.drawsReflections; })));
   const std::vector<std::string> bodies = namesOfDrawn(gpuScene_->scene(), [](const Material& material) {
     return material.bsdf == Bsdf::dielectric && material.interior >= 0;
   });
   if (!bodies.empty() && technique_ && technique_->previewsMedia())
-    warn(fmt::format("media are a preview, which scatter as surfaces do: {} (path draws them as they are)",
-                     fmt::join(bodies, ", ")));
+    warn(fmt::format("media are a preview, which scatter as surfaces do: {} ({} draws them as they are)",
+                     fmt::join(bodies, ", "), draws));
   else if (!bodies.empty())
-    warn(
-        fmt::format("the medium inside of a body, its colour too, is left out: {} (irradiance-cache previews it, path "
-                    "draws it)",
-                    fmt::join(bodies, ", ")));
+    warn(fmt::format("the medium inside of a body, its colour too, is left out: {} ({} previews it, {} draws it)",
+                     fmt::join(bodies, ", "), previews, draws));
   const std::vector<std::string> boundaries = namesOfDrawn(gpuScene_->scene(), [](const Material& material) {
     return material.bsdf == Bsdf::none && material.interior >= 0;
   });
   if (settings_.textures.boundaries && !boundaries.empty())
-    warn(fmt::format("the boundary of a medium is drawn, and matt: {} (path draws the medium)",
-                     fmt::join(boundaries, ", ")));
+    warn(fmt::format("the boundary of a medium is drawn, and matt: {} ({} draws the medium)",
+                     fmt::join(boundaries, ", "), draws));
   if (features_.environment && lacksLight) warn("the environment lights nothing (" + lit + ")");
 }
 
