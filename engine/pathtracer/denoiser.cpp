@@ -30,7 +30,7 @@ DenoisedError denoisedError(std::span<const DenoisedBlock> blocks, int columns, 
   const double values = 3.0 * all.pixels;
 
   // Standard error of a sum over all blocks, from its differences from the mean in each block and in those around it.
-  const auto standardError = [&](double DenoisedBlock::* sum) {
+  const auto standardError = [&](double DenoisedBlock::*sum) {
     const auto apart = [&](int i) {
       const DenoisedBlock& b = blocks[static_cast<std::size_t>(i)];
       return b.*sum - all.*sum * (b.pixels / all.pixels);
@@ -65,21 +65,22 @@ Denoiser::Denoiser(gl::ProgramLibrary& programs, const PathTracer& tracer)
       constants_("denoiser constants", sizeof(shared::PathConstants), nullptr, gl::Usage::dynamicDraw) {
   const PathTracer::Settings& settings = tracer.settings();
   CHECK(settings.halves, "the film of a denoised picture has two halves");
-  features_ = &programs.loadCompute(
-      "features", "pathtracer/features.comp",
-      gl::with(tracer.scene().flags(), {{"LINEAR_SEEDS", 0},
-                                        {"GLOSSY", 0},
-                                        {"SHARED_STACK", tracer.scene().rays().sharedStack()},
-                                        {"DIFFUSE_ONLY", settings.diffuseOnly},
-                                        {"PIXEL_FILTER", PathTracer::filterFlag(settings.filter)},
-                                        {"SAMPLES", kSamplesAtOnce}}));
-  const auto fit = [&](const char* name, int radius, bool narrow, bool colour) {
+  features_ =
+      &programs.loadCompute("features", "pathtracer/features.comp",
+                            gl::with(tracer.scene().flags(), {{"LINEAR_SEEDS", 0},
+                                                              {"GLOSSY", 0},
+                                                              {"SHARED_STACK", tracer.scene().rays().sharedStack()},
+                                                              {"DIFFUSE_ONLY", settings.diffuseOnly},
+                                                              {"PIXEL_FILTER", PathTracer::filterFlag(settings.filter)},
+                                                              {"SAMPLES", kSamplesAtOnce}}));
+  const auto fit = [&](const char* name, int number, int radius, int stride) {
     return &programs.loadCompute(name, "pathtracer/denoise_regress.comp",
-                                 {{"RADIUS", radius}, {"NARROW", narrow}, {"COLOUR", colour}});
+                                 {{"FIT", number}, {"RADIUS", radius}, {"STRIDE", stride}});
   };
-  narrowFit_ = fit("narrow fit", kNarrow, true, false);
-  wideFit_ = fit("wide fit", kWide, false, false);
-  colouredFit_ = fit("fit by colours", kWide, false, true);
+  narrowFit_ = fit("narrow fit", 0, kNarrow, 1);
+  wideFit_ = fit("wide fit", 1, kWide, 1);
+  colouredFit_ = fit("coloured fit", 2, kWide, 1);
+  farFit_ = fit("far fit", 3, kWide, kStride);
   terms_ = &programs.loadCompute("terms", "pathtracer/denoise_terms.comp", {});
   rows_ = &programs.loadCompute("rows of terms", "pathtracer/denoise_rows.comp", {});
   combine_ = &programs.loadCompute("denoised", "pathtracer/denoise_combine.comp", {});
@@ -93,9 +94,10 @@ void Denoiser::allocate() {
   const auto plane = [](const char* name, glm::ivec2 texels) { return gl::Texture(name, gl::Format::rgba32f, texels); };
   colours_ = plane("surface colours", size);
   places_ = plane("surface places", size);
-  narrow_ = plane("narrow candidate", halves);
-  wide_ = plane("wide candidate", halves);
-  coloured_ = plane("candidate by colours", halves);
+  narrow_ = plane("narrow fit", halves);
+  wide_ = plane("wide fit", halves);
+  coloured_ = plane("coloured fit", halves);
+  far_ = plane("far fit", halves);
   for (gl::Texture& texture : term_) texture = plane("denoiser terms", size);
   for (gl::Texture& texture : row_) texture = plane("denoiser rows", size);
   result_ = plane("denoised", size);
@@ -130,7 +132,7 @@ void Denoiser::traceFeatures() {
   hasFeatures_ = true;
 }
 
-void Denoiser::regress(const gl::Program& program, const gl::Texture& to, const gl::Texture* narrow, int radius) {
+void Denoiser::regress(const gl::Program& program, const gl::Texture& to, const gl::Texture* guide, int radius) {
   const glm::ivec2 picture = tracer_.settings().size;
   const gl::ComputePass pass("denoiser fit", gl::Barrier::textureFetch, gl::Barrier::image);
   program.use();
@@ -139,9 +141,9 @@ void Denoiser::regress(const gl::Program& program, const gl::Texture& to, const 
   tracer_.bindSquares(1);
   colours_.bind(2);
   places_.bind(3);
-  if (narrow) narrow->bind(4);
+  if (guide) guide->bind(4);
   to.bindImage(0, gl::Access::write);
-  const double pixels = (2.0 * radius + 1.0) * (2.0 * radius + 1.0), iterations = (narrow ? 4.0 : 2.0) * pixels;
+  const double pixels = (2.0 * radius + 1.0) * (2.0 * radius + 1.0), iterations = (guide ? 4.0 : 2.0) * pixels;
   chunks_.forEach(picture, iterations * kRegressors, kGroup, [&](glm::ivec2 corner, glm::ivec2 size) {
     program.set("firstPixel", corner);
     pass.dispatch(glm::ivec3(size, 1), glm::ivec3(kGroup, kGroup, 1));
@@ -173,6 +175,7 @@ void Denoiser::combine() {
     narrow_.bind(4);
     wide_.bind(5);
     coloured_.bind(6);
+    far_.bind(7);
   };
   const auto run = [&](const gl::Program& program, double iterations, const gl::ComputePass& pass) {
     chunks_.forEach(picture, iterations, kGroup, [&](glm::ivec2 corner, glm::ivec2 size) {
@@ -185,7 +188,7 @@ void Denoiser::combine() {
     terms_->use();
     terms_->set("picture", picture);
     bindCandidates();
-    total_.bind(7);
+    total_.bind(8);
     for (GLuint i = 0; i < term_.size(); ++i) term_[i].bindImage(i, gl::Access::write);
     run(*terms_, kRegressors, pass);
   }
@@ -213,6 +216,7 @@ void Denoiser::denoise() {
     regress(*narrowFit_, narrow_, nullptr, kNarrow);
     regress(*wideFit_, wide_, nullptr, kWide);
     regress(*colouredFit_, coloured_, &narrow_, kWide);
+    regress(*farFit_, far_, &coloured_, kWide);
     sumRadiance();
   }
   combine();
@@ -223,9 +227,8 @@ Image Denoiser::picture() const {
   Image image(result_.size2d().x, result_.size2d().y);
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x)
-      image.at(x, image.height - 1 - y) =
-          glm::vec3(texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
-                           static_cast<std::size_t>(x)]);
+      image.at(x, image.height - 1 - y) = glm::vec3(
+          texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x)]);
   return image;
 }
 
@@ -236,8 +239,8 @@ DenoisedError Denoiser::error() const {
   std::vector<DenoisedBlock> blocks(static_cast<std::size_t>(count.x) * static_cast<std::size_t>(count.y));
   for (int y = 0; y < size.y; ++y)
     for (int x = 0; x < size.x; ++x) {
-      const glm::dvec4 t(texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(size.x) +
-                                static_cast<std::size_t>(x)]);
+      const glm::dvec4 t(
+          texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(size.x) + static_cast<std::size_t>(x)]);
       DenoisedBlock& b = blocks[static_cast<std::size_t>(y / kGroup) * static_cast<std::size_t>(count.x) +
                                 static_cast<std::size_t>(x / kGroup)];
       b.error += t.x;
@@ -252,7 +255,7 @@ DenoisedError Denoiser::error() const {
 std::size_t Denoiser::gpuBytes() const {
   std::size_t bytes = constants_.bytes();
   for (const gl::Texture* texture :
-       {&colours_, &places_, &narrow_, &wide_, &coloured_, &result_, &errors_, &blocks_, &total_})
+       {&colours_, &places_, &narrow_, &wide_, &coloured_, &far_, &result_, &errors_, &blocks_, &total_})
     bytes += texture->bytes();
   for (std::size_t i = 0; i < term_.size(); ++i) bytes += term_[i].bytes() + row_[i].bytes();
   return bytes;

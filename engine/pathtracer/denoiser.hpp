@@ -12,10 +12,11 @@
 // noise falls below the candidates' bias: with n samples the gain falls as 1 / n against the error, and nothing is
 // lost. An unequal pair (one sample more in A) has other factors (shaders/pathtracer/denoise_candidates.glsl).
 //
-// Candidates: fits of first order to features of the surfaces seen, in a narrow and a wide window; the wide one with
-// weights by colours besides; and despeckling, which replaces only values whose variance stands out.
+// Candidates: a fit of first order to features of the surfaces seen; the same with weights by colours; a second one of
+// that farther around; and despeckling, which replaces only values whose variance stands out.
 //
-// Needs: a tracer with halves. Stages: features (once a view), candidates, terms, sums over windows, picture. Everything on the GPU; error() reads a picture back.
+// Needs: a tracer with halves. Stages: features (once a view), candidates, terms, sums over windows, picture.
+// Everything on the GPU; error() reads a picture back.
 #pragma once
 
 #include "base/image.hpp"
@@ -39,9 +40,9 @@ struct DenoisedError {
 
 /// Sums over a block of pixels and their channels.
 struct DenoisedBlock {
-  double error = 0.0;    ///< of estimated squared errors
+  double error = 0.0;  ///< of estimated squared errors
   double heldOut = 0.0;  ///< the same, with the shares that a pixel's neighbours choose without it
-  double raw = 0.0;      ///< of the raw picture's
+  double raw = 0.0;  ///< of the raw picture's
   double pixels = 0.0;
 };
 
@@ -49,9 +50,9 @@ struct DenoisedBlock {
 ///
 /// Shares are chosen by the same estimates that are then summed, which makes `error` too low: they follow its noise.
 /// `heldOut` is free of that, and too high, as its shares are worse. The interval goes from the one less to the other
-/// plus 2.576 standard errors, 99 % of a normal distribution; with few blocks Student's quantile. A standard error comes
-/// from the scatter of the blocks with their neighbours (blocks next to each other share candidates), times sqrt(2):
-/// the true error scatters about its expectation as much as the estimate does.
+/// plus 2.576 standard errors, 99 % of a normal distribution; with few blocks Student's quantile. A standard error
+/// comes from the scatter of the blocks with their neighbours (blocks next to each other share candidates), times
+/// sqrt(2): the true error scatters about its expectation as much as the estimate does.
 DenoisedError denoisedError(std::span<const DenoisedBlock> blocks, int columns, double mean);
 
 class Denoiser {
@@ -69,24 +70,29 @@ class Denoiser {
   /// Radiance, linear, scene units; alpha is 1.
   const gl::Texture& result() const { return result_; }
   Image picture() const;  ///< top row first
+  /// What pixels show: albedo and the share that shines; normal and inverse distance.
+  const gl::Texture& surfaceColours() const { return colours_; }
+  const gl::Texture& surfacePlaces() const { return places_; }
   DenoisedError error() const;  ///< of the last denoise()
   std::size_t gpuBytes() const;
 
-  static constexpr int kNarrow = 2, kWide = 7;  ///< radii of the candidates' windows, pixels
+  static constexpr int kNarrow = 2, kWide = 7;  ///< radii of the fits' windows
+  static constexpr int kStride = 3;  ///< between the pixels of the farthest one's
 
  private:
   void allocate();
   void traceFeatures();
-  void regress(const gl::Program& program, const gl::Texture& to, const gl::Texture* narrow, int radius);
+  void regress(const gl::Program& program, const gl::Texture& to, const gl::Texture* guide, int radius);
   void sumRadiance();
   void combine();
 
   const PathTracer& tracer_;
-  const gl::Program *features_, *narrowFit_, *wideFit_, *colouredFit_, *terms_, *rows_, *combine_, *rawSums_, *allSums_;
+  const gl::Program *features_, *narrowFit_, *wideFit_, *colouredFit_, *farFit_, *terms_, *rows_, *combine_, *rawSums_,
+      *allSums_;
   gl::PictureChunks chunks_;
   gl::Buffer constants_;
-  gl::Texture colours_, places_;            ///< features
-  gl::Texture narrow_, wide_, coloured_;    ///< candidates, of both halves
+  gl::Texture colours_, places_;  ///< features
+  gl::Texture narrow_, wide_, coloured_, far_;  ///< fits, of both halves
   std::array<gl::Texture, 4> term_, row_;
   gl::Texture result_, errors_, blocks_, total_;
   bool hasFeatures_ = false;

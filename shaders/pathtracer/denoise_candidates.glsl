@@ -2,8 +2,9 @@
 layout(binding = 4) uniform sampler2D narrow;
 layout(binding = 5) uniform sampler2D wide;
 layout(binding = 6) uniform sampler2D coloured;
+layout(binding = 7) uniform sampler2D far;
 
-const int kCandidates = 4;  // narrow, wide, coloured, despeckled
+const int kCandidates = 4;  // far, wide, coloured, despeckled
 
 struct Candidates {
   vec3 raw, half0, half1;   // means of both and of each
@@ -22,7 +23,8 @@ Candidates candidatesAt(ivec2 pixel) {
   vec4 wide0 = texelFetch(wide, inHalf(pixel, 0), 0), wide1 = texelFetch(wide, inHalf(pixel, 1), 0);
   vec3 narrow0 = texelFetch(narrow, inHalf(pixel, 0), 0).xyz, narrow1 = texelFetch(narrow, inHalf(pixel, 1), 0).xyz;
   vec3 first[kCandidates], second[kCandidates];
-  first[0] = narrow0, second[0] = narrow1;
+  first[0] = texelFetch(far, inHalf(pixel, 0), 0).xyz;
+  second[0] = texelFetch(far, inHalf(pixel, 1), 0).xyz;
   first[1] = wide0.xyz, second[1] = wide1.xyz;
   first[2] = texelFetch(coloured, inHalf(pixel, 0), 0).xyz;
   second[2] = texelFetch(coloured, inHalf(pixel, 1), 0).xyz;

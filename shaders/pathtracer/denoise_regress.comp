@@ -2,17 +2,17 @@
 // and features, fitted to the pixels around it by weighted least squares, has there [Bitterli2016, 3; Moon2014, 3].
 //
 // With the normal matrix M of the fit, z = M^-1 e_0, and x_q the regressors of pixel q, the fit's value is the sum of
-// w_q (z . x_q) y_q: linear in the pixels y. Without COLOUR the weights w know only features, so that both halves share
-// them; with COLOUR they also fall with the distance between values of the narrow candidate in the same half, in units
-// of its standard error [Rousselle2012, eq. 7].
+// w_q (z . x_q) y_q: linear in the pixels y. FIT 0, narrow, and 1, wide: the weights w know only features, so that both
+// halves share them. 2, coloured: weights also fall with the distance between values of the narrow fit in the same half,
+// in units of its standard error [Rousselle2012, eq. 7]. 3, far: the same of the coloured fit, among pixels STRIDE apart.
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "pathtracer/denoise.glsl"
 layout(binding = 2) uniform sampler2D surfaceColours;
 layout(binding = 3) uniform sampler2D surfacePlaces;
-#if COLOUR
-layout(binding = 4) uniform sampler2D narrow;
+#if FIT >= 2
+layout(binding = 4) uniform sampler2D guide;  // the narrow fit, or the coloured one
 #endif
-// Value; w without COLOUR: of the narrowest one (NARROW) the sum of its variances over the channels, else the share
+// Value; w: of the narrow and the coloured fit the sum of its variances over the channels, of the wide one the share
 // with which despeckling takes the narrow value.
 layout(rgba32f, binding = 0) writeonly restrict uniform image2D candidate;
 uniform ivec2 firstPixel;
@@ -40,7 +40,7 @@ float distance2(Regressors r) {
 // Of a pixel, relative to that at `offset` from it.
 Regressors regressorsAt(ivec2 pixel, ivec2 offset, vec4 colour, vec4 place) {
   Regressors r;
-  r.position = vec3(1.0, vec2(offset) / float(RADIUS));
+  r.position = vec3(1.0, vec2(offset) / float(RADIUS * STRIDE));
   r.colour = texelFetch(surfaceColours, pixel + offset, 0) - colour;
   vec4 other = texelFetch(surfacePlaces, pixel + offset, 0);
   r.place = other - place;
@@ -50,8 +50,8 @@ Regressors regressorsAt(ivec2 pixel, ivec2 offset, vec4 colour, vec4 place) {
 
 float weightOf(Regressors r, ivec2 pixel, ivec2 offset, int which) {
   float far = distance2(r);
-#if COLOUR
-  vec4 own = texelFetch(narrow, inHalf(pixel, which), 0), other = texelFetch(narrow, inHalf(pixel + offset, which), 0);
+#if FIT >= 2
+  vec4 own = texelFetch(guide, inHalf(pixel, which), 0), other = texelFetch(guide, inHalf(pixel + offset, which), 0);
   vec3 difference = other.xyz - own.xyz, equal = 0.5 * kEqualColours * (abs(own.xyz) + abs(other.xyz));
   float noise = kOfColour * kOfColour * (own.w + other.w);
   // Of single samples no variance is known: then colours say nothing.
@@ -96,7 +96,7 @@ void fit(ivec2 pixel, int which, vec4 colour, vec4 place, out float z[kRegressor
   for (int i = 0; i < kRegressors * (kRegressors + 1) / 2; ++i) m[i] = 0.0;
   for (int y = -RADIUS; y <= RADIUS; ++y)
     for (int x = -RADIUS; x <= RADIUS; ++x) {
-      ivec2 offset = ivec2(x, y);
+      ivec2 offset = STRIDE * ivec2(x, y);
       if (!isInPicture(pixel + offset) || !hasBoth(pixel + offset)) continue;
       Regressors r = regressorsAt(pixel, offset, colour, place);
       float w = weightOf(r, pixel, offset, which);
@@ -122,24 +122,26 @@ void main() {
   float around[kHalves];  // sums of variances
   float z[kRegressors], neighbours = 0.0;
   for (int which = 0; which < kHalves; ++which) value[which] = vec4(0.0), around[which] = 0.0;
-  for (int turn = 0; turn < (COLOUR != 0 ? kHalves : 1); ++turn) {
+  for (int turn = 0; turn < (FIT >= 2 ? kHalves : 1); ++turn) {
     fit(pixel, turn, colour, place, z);
     for (int y = -RADIUS; y <= RADIUS; ++y)
       for (int x = -RADIUS; x <= RADIUS; ++x) {
-        ivec2 offset = ivec2(x, y);
+        ivec2 offset = STRIDE * ivec2(x, y);
         if (!isInPicture(pixel + offset) || !hasBoth(pixel + offset)) continue;
         Regressors r = regressorsAt(pixel, offset, colour, place);
         float share = 0.0;
         for (int i = 0; i < kRegressors; ++i) share += z[i] * regressor(r, i);
         share *= weightOf(r, pixel, offset, turn);
-#if COLOUR
-        value[turn].xyz += share * halfAt(pixel + offset, turn).mean;
+#if FIT == 3
+        value[turn].xyz += share * texelFetch(guide, inHalf(pixel + offset, turn), 0).xyz;
+#elif FIT == 2
+        value[turn] += vec4(share * halfAt(pixel + offset, turn).mean, share * share * varianceAt(pixel + offset, turn));
 #else
         if (offset != ivec2(0)) ++neighbours;
         for (int which = 0; which < kHalves; ++which) {
           value[which].xyz += share * halfAt(pixel + offset, which).mean;
           float variance = varianceAt(pixel + offset, which);
-#if NARROW
+#if FIT == 0
           value[which].w += share * share * variance;
 #endif
           if (offset != ivec2(0)) around[which] += variance;
@@ -148,7 +150,7 @@ void main() {
       }
   }
   for (int which = 0; which < kHalves; ++which) {
-#if !COLOUR && !NARROW
+#if FIT == 1
     // Despeckling: the square of the pixel's own variance over that and the square of its neighbours'.
     float own = varianceAt(pixel, which), others = around[which] / max(neighbours, 1.0);
     value[which].w = halfAt(pixel, which).samples < 2.0 ? 1.0 : own * own / (own * own + others * others + 1e-30);

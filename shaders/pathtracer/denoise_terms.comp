@@ -4,7 +4,7 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "pathtracer/denoise.glsl"
 #include "pathtracer/denoise_candidates.glsl"
-layout(binding = 7) uniform sampler2D pictureSum;  // one texel; x: sum of pixels and channels
+layout(binding = 8) uniform sampler2D pictureSum;  // one texel; x: sum of pixels and channels
 layout(rgba32f, binding = 0) writeonly restrict uniform image2D terms0;
 layout(rgba32f, binding = 1) writeonly restrict uniform image2D terms1;
 layout(rgba32f, binding = 2) writeonly restrict uniform image2D terms2;
