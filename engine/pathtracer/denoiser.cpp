@@ -29,12 +29,14 @@ DenoisedError denoisedError(std::span<const DenoisedBlock> blocks, int columns, 
   if (count < 2 || !(all.pixels > 0.0) || !(mean > 0.0)) return result;
   const double values = 3.0 * all.pixels;
 
+  // How far a block is from the mean of all.
+  const auto apartOf = [&](double DenoisedBlock::*sum, int i) {
+    const DenoisedBlock& b = blocks[static_cast<std::size_t>(i)];
+    return b.*sum - all.*sum * (b.pixels / all.pixels);
+  };
   // Standard error of a sum over all blocks, from its differences from the mean in each block and in those around it.
   const auto standardError = [&](double DenoisedBlock::*sum) {
-    const auto apart = [&](int i) {
-      const DenoisedBlock& b = blocks[static_cast<std::size_t>(i)];
-      return b.*sum - all.*sum * (b.pixels / all.pixels);
-    };
+    const auto apart = [&](int i) { return apartOf(sum, i); };
     double own = 0.0, shared = 0.0;
     for (int y = 0; y < rows; ++y)
       for (int x = 0; x < columns; ++x) {
@@ -45,17 +47,26 @@ DenoisedError denoisedError(std::span<const DenoisedBlock> blocks, int columns, 
       }
     return std::sqrt(2.0 * std::max(own, own + shared) * count / (count - 1.0)) / values;
   };
-  // Student's quantile of 99 % by the first terms of its expansion in 1 / freedom [Fisher1926].
+  // Student's quantile of 99 % by the first terms of its expansion in 1 / freedom [AbramowitzStegun1964, 26.7.5].
   constexpr double kNormal = 2.576;
   const double freedom = count - 1.0, z2 = kNormal * kNormal,
                quantile = kNormal * (1.0 + (z2 + 1.0) / (4.0 * freedom) +
                                      (5.0 * z2 * z2 + 16.0 * z2 + 3.0) / (96.0 * freedom * freedom));
+  // Rare bright blocks make the mean's distribution lean: what was not seen is more [Johnson1978].
+  double squares = 0.0, cubes = 0.0;
+  for (int i = 0; i < count; ++i) {
+    const double apart = apartOf(&DenoisedBlock::heldOut, i);
+    squares += apart * apart / freedom;
+    cubes += apart * apart * apart / count;
+  }
+  const double lean =
+      squares > 0.0 ? std::max(cubes, 0.0) * (1.0 + 2.0 * quantile * quantile) / (6.0 * squares * values) : 0.0;
   const auto relative = [&](double square) { return std::sqrt(std::max(square, 0.0)) / mean; };
   const double low = all.error / values, high = all.heldOut / values;
   result.known = true;
   result.value = relative(0.5 * (low + high));
   result.low = relative(std::min(low, high) - quantile * standardError(&DenoisedBlock::error));
-  result.high = relative(std::max(low, high) + quantile * standardError(&DenoisedBlock::heldOut));
+  result.high = relative(std::max(low, high) + quantile * standardError(&DenoisedBlock::heldOut) + lean);
   result.raw = relative(all.raw / values);
   return result;
 }

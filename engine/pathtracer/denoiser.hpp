@@ -52,7 +52,8 @@ struct DenoisedBlock {
 /// `heldOut` is free of that, and too high, as its shares are worse. The interval goes from the one less to the other
 /// plus 2.576 standard errors, 99 % of a normal distribution; with few blocks Student's quantile. A standard error
 /// comes from the scatter of the blocks with their neighbours (blocks next to each other share candidates), times
-/// sqrt(2): the true error scatters about its expectation as much as the estimate does.
+/// sqrt(2): the true error scatters about its expectation as much as the estimate does. The upper end is raised where
+/// blocks are skewed [Johnson1978]. Light that no sample has found is in neither.
 DenoisedError denoisedError(std::span<const DenoisedBlock> blocks, int columns, double mean);
 
 class Denoiser {

@@ -296,6 +296,7 @@ std::vector<std::uint8_t> PathTracer::checkpoint() const {
   Film film;
   film.identity = identity();
   film.size = filmSize();
+  film.halves = settings_.halves;
   film.first = static_cast<std::uint32_t>(constants_.picture.w);
   const std::array<const gl::Texture*, 3> films{&filmMean_, &filmM2_, &filmRest_};
   const std::array<std::vector<glm::uvec4>*, 3> planes{&film.mean, &film.m2, &film.rest};
@@ -314,9 +315,12 @@ std::vector<std::uint8_t> PathTracer::checkpoint() const {
 
 void PathTracer::resume(const std::vector<std::uint8_t>& bytes, const std::string& name) {
   const Film film = filmOf(bytes, name);
+  if (film.halves != settings_.halves)
+    throwBadInput("{}: a checkpoint of a picture {} --denoise; this one is {} it", name,
+                  film.halves ? "with" : "without", settings_.halves ? "with" : "without");
   if (film.size != filmSize())
-    throwBadInput("{}: a checkpoint of {} x {} pixels; this picture{} has {} x {}", name, film.size.x, film.size.y,
-                  settings_.halves ? ", of two halves one above the other," : "", filmSize().x, filmSize().y);
+    throwBadInput("{}: a checkpoint of {} x {} pixels; this picture has {} x {}", name, film.size.x,
+                  film.size.y / (film.halves ? 2 : 1), settings_.size.x, settings_.size.y);
   if (film.identity != identity()) throwBadInput("{}: a checkpoint of another scene, view or setting", name);
   filmMean_.upload(gl::Texels::rgbaWord, film.mean.data());
   filmM2_.upload(gl::Texels::rgbaWord, film.m2.data());

@@ -1,10 +1,10 @@
 // A candidate of the denoiser: in each half of the film by itself, a pixel becomes what a linear function of position
-// and features, fitted to the pixels around it by weighted least squares, has there [Bitterli2016, 3; Moon2014, 3].
+// and features, fitted to the pixels around it by weighted least squares, has there [Moon2014; Bitterli2016].
 //
 // With the normal matrix M of the fit, z = M^-1 e_0, and x_q the regressors of pixel q, the fit's value is the sum of
 // w_q (z . x_q) y_q: linear in the pixels y. FIT 0, narrow, and 1, wide: the weights w know only features, so that both
 // halves share them. 2, coloured: weights also fall with the distance between values of the narrow fit in the same half,
-// in units of its standard error [Rousselle2012, eq. 7]. 3, far: the same of the coloured fit, among pixels STRIDE apart.
+// in units of its standard error [Rousselle2012]. 3, far: the same of the coloured fit, among pixels STRIDE apart.
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "pathtracer/denoise.glsl"
 layout(binding = 2) uniform sampler2D surfaceColours;
