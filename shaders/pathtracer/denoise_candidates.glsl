@@ -40,7 +40,8 @@ Candidates candidatesAt(ivec2 pixel) {
 // A pixel's terms of the squared error of raw + sum l_i change_i, which is
 //   variance + 2 sum l_i c_i + sum l_i l_j G_ij,
 // each without bias whatever the noise, as the halves are independent: with s the share, D the difference of the halves
-// and D_i that of candidate i in them, variance = s (1 - s) D^2, c_i = -s (1 - s) D (D - D_i), G_ij = change_i change_j.
+// and D_i that of candidate i in them, variance = s (1 - s) D^2, c_i = -s (1 - s) D (D - D_i), and G_ij is change_i
+// times change_j.
 struct Terms {
   float variance;
   vec4 c;

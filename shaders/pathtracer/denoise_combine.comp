@@ -40,7 +40,7 @@ Sums termsAt(ivec2 at) {
               texelFetch(terms3, at, 0));
 }
 
-// The shares l that minimise 2 c.l + l.G l where l >= 0 and their sum is at most 1. The rest is the raw picture's share.
+// The shares l that minimise 2 c.l + l.G l where l >= 0 and their sum is at most 1; the rest is the raw picture's.
 // Shares are moved between two of these five at a time, by the exact minimum; as the function is convex, this ends at
 // the minimum.
 vec4 sharesOf(Sums sums) {
@@ -80,8 +80,10 @@ void main() {
   }
   // The window's sums, but for this pixel.
   Sums sums = Sums(vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
+  // ends: at most 2 kWindow + 1 steps each
   for (int y = max(pixel.y - kWindow, 0); y <= min(pixel.y + kWindow, picture.y - 1); ++y)
     if (y != pixel.y) addTo(sums, windowAt(y - pixel.y), rowsAt(ivec2(pixel.x, y)));
+  // ends: likewise
   for (int x = max(pixel.x - kWindow, 0); x <= min(pixel.x + kWindow, picture.x - 1); ++x)
     if (x != pixel.x) addTo(sums, windowAt(x - pixel.x), termsAt(ivec2(x, pixel.y)));
   vec4 sharesOfOthers = sharesOf(sums);

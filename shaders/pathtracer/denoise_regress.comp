@@ -3,8 +3,9 @@
 //
 // With the normal matrix M of the fit, z = M^-1 e_0, and x_q the regressors of pixel q, the fit's value is the sum of
 // w_q (z . x_q) y_q: linear in the pixels y. FIT 0, narrow, and 1, wide: the weights w know only features, so that both
-// halves share them. 2, coloured: weights also fall with the distance between values of the narrow fit in the same half,
-// in units of its standard error [Rousselle2012]. 3, far: the same of the coloured fit, among pixels STRIDE apart.
+// halves share them. 2, coloured: weights also fall with the distance between values of the narrow fit in the same
+// half, in units of its standard error [Rousselle2012]. 3, far: the same of the coloured fit, among pixels that are
+// STRIDE apart.
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "pathtracer/denoise.glsl"
 layout(binding = 2) uniform sampler2D surfaceColours;
@@ -65,26 +66,26 @@ float regressor(Regressors r, int i) {
   return i < 3 ? r.position[i] : i < 7 ? r.colour[i - 3] : r.place[i - 7];
 }
 
-// z of the fit; lower triangle of M, row by row, replaced by its Cholesky factor.
+// z of the fit; lower triangle of M, row by row, replaced by its Cholesky factor. Its loops run over triangles.
 void solve(inout float m[kRegressors * (kRegressors + 1) / 2], out float z[kRegressors]) {
   for (int i = 0; i < kRegressors; ++i) {
     int row = i * (i + 1) / 2;
-    for (int j = 0; j < i; ++j) {
+    for (int j = 0; j < i; ++j) {  // ends: below i
       int other = j * (j + 1) / 2;
       float sum = m[row + j];
-      for (int k = 0; k < j; ++k) sum -= m[row + k] * m[other + k];
+      for (int k = 0; k < j; ++k) sum -= m[row + k] * m[other + k];  // ends: below j
       m[row + j] = sum / m[other + j];
     }
     float diagonal = m[row + i];
-    for (int k = 0; k < i; ++k) diagonal -= m[row + k] * m[row + k];
+    for (int k = 0; k < i; ++k) diagonal -= m[row + k] * m[row + k];  // ends: below i
     m[row + i] = sqrt(max(diagonal, 1e-12));
   }
   for (int i = 0; i < kRegressors; ++i) {
     float sum = i == 0 ? 1.0 : 0.0;
-    for (int k = 0; k < i; ++k) sum -= m[i * (i + 1) / 2 + k] * z[k];
+    for (int k = 0; k < i; ++k) sum -= m[i * (i + 1) / 2 + k] * z[k];  // ends: below i
     z[i] = sum / m[i * (i + 1) / 2 + i];
   }
-  for (int i = kRegressors - 1; i >= 0; --i) {
+  for (int i = kRegressors - 1; i >= 0; --i) {  // ends: at 0
     float sum = z[i];
     for (int k = i + 1; k < kRegressors; ++k) sum -= m[k * (k + 1) / 2 + i] * z[k];
     z[i] = sum / m[i * (i + 1) / 2 + i];
@@ -102,7 +103,7 @@ void fit(ivec2 pixel, int which, vec4 colour, vec4 place, out float z[kRegressor
       float w = weightOf(r, pixel, offset, which);
       for (int i = 0; i < kRegressors; ++i) {
         float wi = w * regressor(r, i);
-        for (int j = 0; j <= i; ++j) m[i * (i + 1) / 2 + j] += wi * regressor(r, j);
+        for (int j = 0; j <= i; ++j) m[i * (i + 1) / 2 + j] += wi * regressor(r, j);  // ends: at i
       }
     }
   for (int i = 1; i < kRegressors; ++i) m[i * (i + 1) / 2 + i] += kRidge * m[0];
@@ -135,7 +136,8 @@ void main() {
 #if FIT == 3
         value[turn].xyz += share * texelFetch(guide, inHalf(pixel + offset, turn), 0).xyz;
 #elif FIT == 2
-        value[turn] += vec4(share * halfAt(pixel + offset, turn).mean, share * share * varianceAt(pixel + offset, turn));
+        float variance = varianceAt(pixel + offset, turn);
+        value[turn] += vec4(share * halfAt(pixel + offset, turn).mean, share * share * variance);
 #else
         if (offset != ivec2(0)) ++neighbours;
         for (int which = 0; which < kHalves; ++which) {

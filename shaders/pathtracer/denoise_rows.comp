@@ -15,6 +15,7 @@ void main() {
   ivec2 pixel = firstPixel + ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(pixel, picture))) return;
   vec4 sum0 = vec4(0.0), sum1 = vec4(0.0), sum2 = vec4(0.0), sum3 = vec4(0.0);
+  // ends: at most 2 kWindow + 1 steps
   for (int x = max(pixel.x - kWindow, 0); x <= min(pixel.x + kWindow, picture.x - 1); ++x) {
     float weight = windowAt(x - pixel.x);
     ivec2 at = ivec2(x, pixel.y);

@@ -6,7 +6,7 @@ layout(binding = 2) uniform sampler2D blocks;
 #endif
 layout(rgba32f, binding = 0) writeonly restrict uniform image2D sums;
 
-shared float parts[64];
+shared float sumOfLane[64];
 
 void main() {
   int lane = int(gl_LocalInvocationIndex);
@@ -21,10 +21,11 @@ void main() {
     sum = raw.x + raw.y + raw.z;
   }
 #endif
-  parts[lane] = sum;
+  sumOfLane[lane] = sum;
+  // ends: halved six times
   for (int step = 32; step > 0; step /= 2) {
     barrier();
-    if (lane < step) parts[lane] += parts[lane + step];
+    if (lane < step) sumOfLane[lane] += sumOfLane[lane + step];
   }
-  if (lane == 0) imageStore(sums, ivec2(gl_WorkGroupID.xy), vec4(parts[0], 0.0, 0.0, 0.0));
+  if (lane == 0) imageStore(sums, ivec2(gl_WorkGroupID.xy), vec4(sumOfLane[0], 0.0, 0.0, 0.0));
 }
