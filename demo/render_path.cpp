@@ -6,6 +6,7 @@
 #include "base/json.hpp"
 #include "base/log.hpp"
 #include "shared/parts.hpp"
+#include "pathtracer/denoiser.hpp"
 #include "pathtracer/film.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "scene/scene_file.hpp"
@@ -93,14 +94,17 @@ void PathOptions::declare(Command app) {
       "makes one picture of all parts");
   app.addOption("--part", part, "path: K/N, part K of N, from 0, of the samples of --spp, as --samples");
   app.addOption("--save-every", saveEvery, "path: seconds between checkpoints").showDefault().range(0.0, 1e6);
+  app.addFlag("--denoise", denoise,
+              "path: the picture denoised, with its error; it is never worse than the raw one in expectation, and no "
+              "reference is denoised");
   app.addOption("--seed", seed, "path: seed of the random numbers (0)");
 }
 
 void PathOptions::refuseIfGiven(const std::string& technique) const {
-  if (spp || seconds || error || bounces || seed || !checkpoint.empty() || !samples.empty() || !part.empty())
+  if (spp || seconds || error || bounces || seed || denoise || !checkpoint.empty() || !samples.empty() || !part.empty())
     throwBadInput(
-        "--technique {}: --spp, --samples, --part, --seconds, --error, --bounces, --seed and --checkpoint belong to "
-        "--technique path",
+        "--technique {}: --spp, --samples, --part, --seconds, --error, --bounces, --seed, --denoise and --checkpoint "
+        "belong to --technique path",
         technique);
 }
 
@@ -116,6 +120,7 @@ PathTracer::Settings tracerSettings(const PictureOptions& picture, const PathOpt
   settings.bounces = path.bounces.value_or(shared.of<PathSettings>().scatterings);
   settings.seed = path.seed.value_or(shared.of<PathSettings>().seed);
   settings.deviations = shared.of<PathSettings>().deviations;
+  settings.halves = path.denoise || shared.of<PathSettings>().denoise;
   return settings;
 }
 
@@ -127,6 +132,8 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   const RenderSettings shared = rest.parse();
   const PathTracer::Settings settings = tracerSettings(picture, path, shared);
   const std::optional<SampleRange> part = sampleRange(path);
+  if (part && settings.halves)
+    throwBadInput("--denoise: cannot be combined with --samples and --part, whose parts become one picture later");
   if (output.empty() && !part) throwBadInput("--output is missing: the file for the picture");
   if (!output.empty() && !isWritableImageName(output))
     throwBadInput("-o {}: the extension must be png, hdr, exr or pfm", output);
@@ -141,6 +148,8 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   gl::ProgramLibrary programs;
   PathTracer tracer(context, programs, scene, settings);
   tracer.setCamera(camera);
+  std::optional<Denoiser> denoiser;
+  if (settings.halves) denoiser.emplace(programs, tracer);
   // Without --checkpoint the film is stored next to the picture, and only if the work was stopped.
   const std::string checkpoint = path.checkpoint.empty() ? output + ".film" : path.checkpoint;
   if (std::filesystem::exists(checkpoint)) {
@@ -194,6 +203,7 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
     }
   }
   tracer.dropUnfinishedPass();
+  if (denoiser && !interrupted()) denoiser->denoise();
   const double seconds = elapsed();
   if (interrupted()) {
     save();
@@ -203,7 +213,8 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
 
   // Write the picture; then report for people and as JSON.
   const PathTracer::Statistics statistics = tracer.statistics();
-  const Image image = tracer.mean();
+  const Image image = denoiser ? denoiser->picture() : tracer.mean();
+  const DenoisedError denoised = denoiser ? denoiser->error() : DenoisedError{};
   if (lowerExtension(output) == ".png") writePng(output, toneMapped(image, shared.exposure.value_or(scene.exposure)));
   else if (!output.empty())  // for a part, only the checkpoint may be wanted
     writeImage(output, image);
@@ -217,6 +228,14 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
         output.empty() ? checkpoint : output, image.width, image.height, picture.component, statistics.samples,
         statistics.mean.x, statistics.mean.y, statistics.mean.z, statistics.standardError, statistics.relativeError,
         seconds, context.capabilities().renderer);
+  if (denoiser && !common.quiet) {
+    fmt::print("denoised");
+    if (denoised.known)
+      fmt::print(": root mean square error {:.3g} of the mean, between {:.3g} and {:.3g} (99 %); {:.3g} before",
+                 denoised.value, denoised.low, denoised.high, denoised.raw);
+    else fmt::print("; below {} samples per pixel its error is not known", Denoiser::kFewestSamples);
+    fmt::print("\n");
+  }
   nlohmann::ordered_json json;
   json["renderer"] = context.capabilities().renderer;
   json["host"] = nameOf(host->kind());
@@ -245,7 +264,13 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   json["relative_error"] = finiteOrNull(statistics.relativeError);
   json["bounces"] = settings.bounces != PathTracer::kUnlimited ? nlohmann::ordered_json(settings.bounces)
                                                                : nlohmann::ordered_json(nullptr);
-  json["gpu_bytes"] = tracer.gpuBytes();
+  if (denoiser) {
+    json["denoised"] = {{"known", denoised.known}};
+    if (denoised.known)
+      json["denoised"].update(
+          {{"error", denoised.value}, {"low", denoised.low}, {"high", denoised.high}, {"raw", denoised.raw}});
+  }
+  json["gpu_bytes"] = tracer.gpuBytes() + (denoiser ? denoiser->gpuBytes() : 0);
   json["left_out"] = nlohmann::ordered_json::array();
   for (const auto& [name, needed] : tracer.features().named())
     if (!needed) json["left_out"].push_back(name);

@@ -15,6 +15,7 @@ struct PathOptions {
   std::string samples;  ///< "FIRST:LAST": only those samples, LAST excluded, into the checkpoint; empty: all
   std::string part;  ///< "K/N": part K of N of the samples of --spp, into the checkpoint; empty: all
   std::optional<std::uint32_t> seed;
+  bool denoise = false;  ///< as path.denoise
   std::string checkpoint;  ///< empty: none
   double saveEvery = 60.0;  ///< seconds between checkpoints
   bool sizeGiven = true;  ///< without --size, the original's files and fidelity use the original's size

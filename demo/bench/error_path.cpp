@@ -1,5 +1,5 @@
-// The path tracer's sweeps, corrected and as published, and its deviations one by one: pictures that accumulate
-// samples, observed at 1, 2, 4, ... samples per pixel.
+// The path tracer's sweeps, corrected, denoised and as published, and its deviations one by one: pictures that
+// accumulate samples, observed at 1, 2, 4, ... samples per pixel.
 #include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/files.hpp"
@@ -7,6 +7,7 @@
 #include "bench/error_rows.hpp"
 #include "gl/draw.hpp"
 #include "measure/flip.hpp"
+#include "pathtracer/denoiser.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "render/deviations.hpp"
 
@@ -14,6 +15,7 @@
 
 #include <cmath>
 #include <ctime>
+#include <optional>
 
 namespace lucerna::demo::bench {
 
@@ -21,7 +23,7 @@ namespace {
 
 constexpr std::uint32_t kWarmUp = 8;  // samples per pixel
 
-/// Corrected, as published, or corrected with one deviation.
+/// Corrected, denoised, as published, or corrected with one deviation.
 struct PathSeries {
   std::string name, fidelity;
   std::vector<std::string> deviations;
@@ -30,9 +32,10 @@ struct PathSeries {
   double seconds = 0.0;  ///< for one seed's sweep
   bool lastPoint = false;  ///< keep only that one
   std::uint32_t samples = 0;  ///< the last point; 0: by time
+  bool denoised = false;
 
   std::string label() const {
-    std::string text = "path";
+    std::string text = denoised ? "path denoised" : "path";
     if (fidelity != "corrected") text += " " + fidelity;
     for (const std::string& d : deviations) text += " " + d;
     return text;
@@ -60,11 +63,16 @@ std::vector<PathSeries> seriesOf(const ErrorBench& bench, bool deviations) {
   if (deviations)
     for (const Deviation& d : allDeviations())
       if (std::string_view(d.name).starts_with("path.")) all.push_back(seriesOf("corrected", std::string(d.name)));
+  if (!deviations) {
+    all.push_back(seriesOf("corrected", ""));
+    all.back().name = "path (denoised)";
+    all.back().denoised = true;
+  }
   all.push_back(seriesOf("original", ""));
   for (PathSeries& series : all) {
     series.lastPoint = deviations;
     if (deviations) series.seeds = 1;
-    series.seconds = bench.pathSeconds / (deviations ? static_cast<double>(all.size()) : 4.0);
+    series.seconds = bench.pathSeconds / (deviations ? static_cast<double>(all.size()) : 5.0);
   }
   return all;
 }
@@ -75,6 +83,7 @@ struct Observation {
   std::size_t gpuBytes = 0;
   double setupMs = 0.0;
   Image picture, standardError;  // for the first seed
+  DenoisedError denoised;
 };
 
 std::uint32_t seedOf(int index) { return 0x51ed270bu + static_cast<std::uint32_t>(index) * 7919u; }
@@ -86,6 +95,7 @@ PathTracer::Settings settingsOf(const ErrorBench& bench, const PathSeries& serie
   settings.deviations = series.switches;
   settings.filter = bench.filter;
   settings.seed = seedOf(seed);
+  settings.halves = series.denoised;
   return settings;
 }
 
@@ -96,8 +106,12 @@ void observe(const ErrorBench& bench, const PathSeries& series, int seed,
   tracer.setCamera(bench.camera);
   // Preparation: the driver finishes the program on first use, and submissions grow until each takes its share of a
   // second.
+  std::optional<Denoiser> denoiser;
+  if (series.denoised) denoiser.emplace(bench.programs, tracer);
   tracer.record(kWarmUp);
+  if (denoiser) denoiser->denoise();
   tracer.setCamera(bench.camera);
+  if (denoiser) denoiser->forget();
   gl::finish();
   const double setup = std::chrono::duration<double, std::milli>(Clock::now() - made).count();
   double spent = 0.0, cpu = 0.0;
@@ -113,11 +127,20 @@ void observe(const ErrorBench& bench, const PathSeries& series, int seed,
     gl::finish();
     spent += std::chrono::duration<double, std::milli>(Clock::now() - start).count();
     cpu += 1e3 * static_cast<double>(std::clock() - cpuStart) / CLOCKS_PER_SEC;
+    // Each point is a picture of its own, denoised once.
+    const auto begun = Clock::now();
+    const std::clock_t cpuBegun = std::clock();
+    if (denoiser) {
+      denoiser->denoise();
+      gl::finish();
+    }
+    const double ownMs = std::chrono::duration<double, std::milli>(Clock::now() - begun).count(),
+                 ownCpu = 1e3 * static_cast<double>(std::clock() - cpuBegun) / CLOCKS_PER_SEC;
     if (seed == 0) sweep.emplace_back(samples, Observation{});
     Observation& o = sweep[step].second;
-    o.ms.push_back(spent);
-    o.cpuMs.push_back(cpu);
-    const Image picture = tracer.mean();
+    o.ms.push_back(spent + ownMs);
+    o.cpuMs.push_back(cpu + ownCpu);
+    const Image picture = denoiser ? denoiser->picture() : tracer.mean();
     const measure::Reference& reference = bench.references.path();
     const glm::dvec3 own = tracer.statistics().meanError;
     // Channels share their paths: their errors add as if fully correlated.
@@ -125,9 +148,10 @@ void observe(const ErrorBench& bench, const PathSeries& series, int seed,
     o.errors.push_back(bench.references.judge(picture, reference, false, ownError));
     if (seed == 0) {
       o.picture = picture;
-      if (samples > 1) o.standardError = tracer.standardError();
+      if (samples > 1 && !denoiser) o.standardError = tracer.standardError();
+      if (denoiser) o.denoised = denoiser->error();
       o.setupMs = setup;
-      o.gpuBytes = tracer.gpuBytes();
+      o.gpuBytes = tracer.gpuBytes() + (denoiser ? denoiser->gpuBytes() : 0);
     }
   }
 }
@@ -149,6 +173,12 @@ ErrorRow rowOf(const ErrorBench& bench, const PathSeries& series, std::uint32_t 
   row["technique"] = "path";
   row["fidelity"] = series.fidelity;
   row["settings"] = {fmt::format("spp={}", samples)};
+  if (series.denoised) {
+    row["settings"].push_back("path.denoise=on");
+    row["denoised"] = {{"known", o.denoised.known}};
+    if (o.denoised.known)
+      row["denoised"].update({{"nrmse", o.denoised.value}, {"low", o.denoised.low}, {"high", o.denoised.high}});
+  }
   row["deviations"] = series.deviations;
   row["series"] = series.name;
   row["label"] = fmt::format("{} spp={}", series.label(), samples);

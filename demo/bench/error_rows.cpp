@@ -261,7 +261,8 @@ void addProvenance(const ErrorBench& bench, ErrorRow& row) {
     words.insert(words.end(), {"--deviation", deviation.get<std::string>()});
   if (row.contains("spp"))
     words.insert(words.end(), {"--spp", row.at("spp").dump(), "--seed", row.at("seeds").at("seed").at(0).dump()});
-  else
+  if (row.contains("denoised")) words.push_back("--denoise");
+  if (!row.contains("spp"))
     for (const auto& setting : row.at("settings")) words.insert(words.end(), {"--set", setting.get<std::string>()});
   row["picture_command"] = bench.pictureCommand + " " + shellCommand(words) + " -o picture.pfm";
 }

@@ -84,8 +84,8 @@ bool isBound(const ErrorRow& row) { return row.value("at_noise", false); }
 
 std::string describe(const ErrorRow& row) {
   return fmt::format("{}: {:.2f} ms per picture after {:.3g} s of set-up, NRMSE {}{:.3g} %",
-                     row.at("label").get<std::string>(), number(row, "ms"), setupSeconds(row),
-                     isBound(row) ? "< " : "", 100.0 * bench::rankedError(row, "nrmse"));
+                     row.at("label").get<std::string>(), number(row, "ms"), setupSeconds(row), isBound(row) ? "< " : "",
+                     100.0 * bench::rankedError(row, "nrmse"));
 }
 
 int runTune(TuneOptions options) {
@@ -113,11 +113,14 @@ int runTune(TuneOptions options) {
       {"deviations", row.at("deviations")},
       {"settings", row.contains("spp") ? nlohmann::ordered_json::array() : row.at("settings")}};
   if (row.contains("spp")) settings["spp"] = row.at("spp");
-  settings["measured"] = {{"ms", row.at("ms")},           {"setup_ms", row.at("setup_ms")},
+  if (row.contains("denoised")) settings["settings"].push_back("path.denoise=on");
+  settings["measured"] = {{"ms", row.at("ms")},
+                          {"setup_ms", row.at("setup_ms")},
                           {"nrmse", bench::rankedError(row, "nrmse")},
                           {"nrmse_is_bound", isBound(row)},
                           {"size", options.bench.size},
-                          {"scene", options.bench.scene}, {"renderer", result->report.renderer}};
+                          {"scene", options.bench.scene},
+                          {"renderer", result->report.renderer}};
   writeFileAtomically(options.output, settings.dump(2) + "\n");
   if (!options.common.quiet)
     fmt::print("{}\n{}: lucerna render {} --settings {} -o OUT.png\n", describe(row), options.output,

@@ -1,5 +1,7 @@
 #include "walk/labels.hpp"
 
+#include "pathtracer/path_frame.hpp"
+
 #include <fmt/format.h>
 #include <imgui.h>
 
@@ -19,8 +21,12 @@ std::vector<std::string> linesOf(const WalkState& state, int index, Show show) {
   if (side.shows == Shows::picture && side.picture)
     title += std::filesystem::path(side.pictureShown).filename().string();
   else if (side.shows == Shows::reference && hasReference)
-    title += fmt::format("reference, {} samples a pixel", state.reference->samples());
+    title += fmt::format("reference, {} samples a pixel{}", state.reference->samples(),
+                         state.reference->showsDenoised() ? ", denoised" : "");
   else title += side.built.technique;
+  const PathFrame* path =
+      side.shows == Shows::technique && side.renderer ? pathFrameOf(side.renderer->technique()) : nullptr;
+  if (path && path->denoisedSamples() > 1) title += ", denoised";
   if (side.shows == Shows::technique && side.built.component != "all") title += ", " + side.built.component;
   if (side.shows == Shows::technique && !side.built.settings.empty())
     title += fmt::format(", {} setting{}", side.built.settings.size(), side.built.settings.size() == 1 ? "" : "s");

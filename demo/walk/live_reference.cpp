@@ -33,7 +33,7 @@ gl::Texture textureOf(const std::string& name, const Image& image) {
 // The settings are those of engine/pathtracer/path_sampler.cpp, so that both give the same picture; another seed makes
 // it independent of the cached samples.
 LiveReference::LiveReference(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
-                             glm::ivec2 size, PixelFilter filter, Component component)
+                             glm::ivec2 size, PixelFilter filter, Component component, bool denoised)
     : context_(context),
       scene_(scene),
       size_(size),
@@ -49,7 +49,9 @@ LiveReference::LiveReference(const gl::Context& context, gl::ProgramLibrary& pro
   seed.add(std::string_view("live"));
   seed.add(static_cast<std::uint64_t>(std::chrono::system_clock::now().time_since_epoch().count()));
   settings.seed = static_cast<std::uint32_t>(seed.value() ^ seed.value() >> 32);
+  settings.halves = denoised;
   tracer_ = std::make_unique<PathTracer>(context, programs, scene, settings);
+  if (denoised) denoiser_.emplace(programs, *tracer_);
   meanTexture_ = gl::Texture("reference", gl::Format::rgba32f, size);
   errorTexture_ = gl::Texture("standard error of the reference", gl::Format::rgba32f, size);
 }
@@ -61,6 +63,9 @@ PixelFilter LiveReference::filter() const { return tracer_->settings().filter; }
 void LiveReference::look(const Camera& camera) {
   keep();
   tracer_->setCamera(camera);
+  if (denoiser_) denoiser_->forget();
+  showsDenoised_ = false;
+  denoisedAt_ = 0;
   key_ = measure::keyOf(scene_, camera, size_, transportOf(component_),
                         PathSampler::versionOf(tracer_->settings().filter));
   cached_ = cache_.load(*key_);
@@ -104,7 +109,17 @@ void LiveReference::publish() {
   else if (cached_) shown_ = *cached_;
   else if (shownSamples_ >= 2) shown_ = std::move(mine);
   else return;
-  upload(meanTexture_, shown_.mean);
+  showsDenoised_ = denoiser_ && shownSamples_ >= 2 && shownSamples_ > cachedSamples_;
+  if (showsDenoised_) {
+    // Anew whenever the samples have doubled: it takes as long as several samples.
+    if (shownSamples_ >= 2 * denoisedAt_) {
+      denoiser_->denoise();
+      gl::copyTexels(denoiser_->result(), {0, 0}, meanTexture_, {0, 0}, size_);
+      denoisedAt_ = shownSamples_;
+    }
+  } else {
+    upload(meanTexture_, shown_.mean);
+  }
   upload(errorTexture_, shown_.standardError);
   ++version_;
 }
@@ -118,7 +133,7 @@ void LiveReference::keep() {
 }
 
 std::size_t LiveReference::gpuBytes() const {
-  return tracer_->gpuBytes() + meanTexture_.bytes() + errorTexture_.bytes();
+  return tracer_->gpuBytes() + (denoiser_ ? denoiser_->gpuBytes() : 0) + meanTexture_.bytes() + errorTexture_.bytes();
 }
 
 Judgement::~Judgement() {

@@ -10,6 +10,7 @@
 #include "gl/program.hpp"
 #include "measure/error_interval.hpp"
 #include "measure/reference.hpp"
+#include "pathtracer/denoiser.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "render/renderer.hpp"
 
@@ -23,7 +24,7 @@ class LiveReference {
  public:
   /// Compiles, and builds the scene's hierarchy; `scene` must outlive it.
   LiveReference(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, glm::ivec2 size,
-                PixelFilter filter, Component component);
+                PixelFilter filter, Component component, bool denoised = false);
   ~LiveReference();
 
   glm::ivec2 size() const { return size_; }
@@ -40,7 +41,11 @@ class LiveReference {
   std::uint64_t samples() const { return cachedSamples_ + shownSamples_; }
   bool ready() const { return samples() >= kFewest; }
   double seconds() const { return seconds_; }  ///< spent on this view
+  /// Its picture. Denoised, if wanted and once this view has more samples of its own than the cache's; reference(),
+  /// against which pictures are judged and which is stored, never is.
   const gl::Texture& mean() const { return meanTexture_; }
+  bool denoises() const { return denoiser_.has_value(); }  ///< if wanted
+  bool showsDenoised() const { return showsDenoised_; }
   const gl::Texture& standardError() const { return errorTexture_; }
   const measure::Reference& reference() const { return shown_; }
   /// Incremented whenever the reference has improved or changed.
@@ -60,6 +65,9 @@ class LiveReference {
   glm::ivec2 size_;
   Component component_;
   std::unique_ptr<PathTracer> tracer_;
+  std::optional<Denoiser> denoiser_;
+  bool showsDenoised_ = false;
+  std::uint64_t denoisedAt_ = 0;  ///< samples, of the picture shown
   measure::ReferenceCache cache_;
   std::optional<measure::ReferenceKey> key_;
   std::optional<measure::Reference> cached_;

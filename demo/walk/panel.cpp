@@ -7,6 +7,7 @@
 #include "base/statistics.hpp"
 #include "irradiance_cache/irradiance_cache_frame.hpp"
 #include "lpv/lpv_frame.hpp"
+#include "pathtracer/path_frame.hpp"
 #include "radiosity/radiosity_frame.hpp"
 #include "render/techniques.hpp"
 #include "walk/controls.hpp"
@@ -250,6 +251,17 @@ void showSide(Ui& ui, WalkState& s, int index) {
   else if (side.renderer)
     line(fmt::format("made in {:.2f} s, {:.1f} MiB on the GPU", side.buildSeconds,
                      static_cast<double>(side.renderer->gpuBytes()) / 1048576.0));
+  if (const PathFrame* path = side.renderer ? pathFrameOf(side.renderer->technique()) : nullptr;
+      path && path->denoisedSamples() > 0) {
+    const DenoisedError& e = path->denoisedError();
+    line(e.known ? fmt::format("denoised at {} samples: error {:.2f} %, {:.2f} to {:.2f} (99 %)",
+                               path->denoisedSamples(), 100.0 * e.value, 100.0 * e.low, 100.0 * e.high)
+                 : fmt::format("denoised at {} samples; error from {} on", path->denoisedSamples(),
+                               Denoiser::kFewestSamples));
+    explain(
+        "Root mean square error over the picture's mean, from the two halves of its samples alone. It is denoised anew "
+        "when the samples have doubled, and at the end.");
+  }
   const auto inColour = [](ImU32 colour, const std::string& text) {
     ImGui::PushStyleColor(ImGuiCol_Text, colour);
     wrapped(text);
@@ -299,6 +311,10 @@ void showCompare(Ui& ui, WalkState& s) {
   explain(
       "While the camera rests, the path tracer computes the reference of this view; it is stored with the bench's "
       "references.");
+  checkbox(ui, "denoise its picture", s.referenceDenoised);
+  explain(
+      "Shows the reference denoised, and says so. Errors are measured against the samples as they are, and those alone "
+      "are stored.");
   slider(ui, "share of a frame", s.referenceShare, 0.01f, 0.9f, "%.2f");
   explain(
       "Share of a frame's time for the path tracer while the picture is still being computed; on a still view it uses "

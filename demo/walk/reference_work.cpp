@@ -39,13 +39,15 @@ bool ReferenceWork::seek(const Frame& frame) {
   const glm::ivec2 size = shown.renderer->size();
   const Component component = shown.renderer->settings().component;
   if (!state_.reference || state_.reference->size() != size || state_.reference->component() != component ||
-      state_.reference->filter() != shown.renderer->settings().filter || version_ != state_.sceneVersion) {
+      state_.reference->filter() != shown.renderer->settings().filter || version_ != state_.sceneVersion ||
+      state_.reference->denoises() != state_.referenceDenoised) {
     try {
       frame.note("making the path tracer");
       const gl::BuildWatch watch([&](const std::string& name) { frame.note("compiling " + name); });
       state_.reference.reset();
-      state_.reference = std::make_unique<LiveReference>(context_, programs_, *state_.scene, size,
-                                                         shown.renderer->settings().filter, component);
+      state_.reference =
+          std::make_unique<LiveReference>(context_, programs_, *state_.scene, size, shown.renderer->settings().filter,
+                                          component, state_.referenceDenoised);
       version_ = state_.sceneVersion;
       camera_.reset();
       made = true;

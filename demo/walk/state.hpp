@@ -136,6 +136,7 @@ struct WalkState {
   // Reference
   bool liveReferenceOn = false;
   float referenceShare = 0.1f;  ///< of a frame's time
+  bool referenceDenoised = false;  ///< its picture, not what is judged against
   std::unique_ptr<LiveReference> reference;
 
   // Window

@@ -21,7 +21,7 @@ constexpr std::array<char, 8> kMagic{'L', 'U', 'C', 'P', 'A', 'T', 'H', '2'};
 struct Header {
   std::array<char, 8> magic = kMagic;
   std::uint64_t identity = 0, hash = 0;
-  std::uint32_t width = 0, height = 0, first = 0, reserved = 0;
+  std::uint32_t width = 0, height = 0, first = 0, halves = 0;
 };
 
 std::uint64_t hashOf(const std::uint8_t* words, std::size_t size, std::uint32_t first) {
@@ -121,6 +121,7 @@ Film filmOf(std::span<const std::uint8_t> bytes, const std::string& name) {
   film.identity = header.identity;
   film.size = {static_cast<int>(header.width), static_cast<int>(header.height)};
   film.first = header.first;
+  film.halves = header.halves != 0;
   const std::uint8_t* from = bytes.data() + sizeof header;
   for (std::vector<glm::uvec4>* words : {&film.mean, &film.m2, &film.rest}) {
     words->resize(texels);
@@ -136,6 +137,7 @@ std::vector<std::uint8_t> bytesOf(const Film& film) {
   header.width = static_cast<std::uint32_t>(film.size.x);
   header.height = static_cast<std::uint32_t>(film.size.y);
   header.first = film.first;
+  header.halves = film.halves;
   std::vector<std::uint8_t> bytes(sizeof header);
   for (const std::vector<glm::uvec4>* words : {&film.mean, &film.m2, &film.rest}) {
     const auto* begin = reinterpret_cast<const std::uint8_t*>(words->data());
@@ -156,6 +158,7 @@ std::uint32_t firstSampleOf(const std::filesystem::path& file) {
 }
 
 void FilmMerge::add(const Film& film, const std::string& name) {
+  if (film.halves) throwBadInput("{}: the film of a denoised picture, which has no parts to merge", name);
   const std::uint32_t samples = film.mean.front().w;
   if (samples == 0 ||
       std::any_of(film.mean.begin(), film.mean.end(), [&](const glm::uvec4& w) { return w.w != samples; }))

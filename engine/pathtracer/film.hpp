@@ -27,9 +27,8 @@ struct FilmStatistics {
   std::uint32_t fewestSamples = 0, mostSamples = 0;
   double samples = 0.0;  ///< mean over pixels
   glm::dvec3 mean{0.0}, meanError{0.0};
-  double standardError =
-      0.0;  ///< root mean square over pixels and channels of a pixel's standard error; infinite below 2 samples. A
-            ///< pixel that found nothing counts by the rule of three
+  double standardError = 0.0;  ///< root mean square over pixels and channels of a pixel's standard error; infinite
+                               ///< below 2 samples. A pixel that found nothing counts by the rule of three
   double relativeError = 0.0;  ///< that over the mean, channels averaged; infinite for a black picture
 };
 FilmStatistics statisticsOf(std::span<const FilmPixel> pixels);
@@ -40,6 +39,7 @@ struct Film {
   std::uint64_t identity = 0;  ///< hash of scene, view, size and settings: everything that determines the picture
   glm::ivec2 size{0};
   std::uint32_t first = 0;  ///< number of the first sample
+  bool halves = false;  ///< two pictures of half the samples, one above the other (PathTracer::Settings::halves)
   /// Bits of floats as words, bottom row first: mean and, in w, the number of samples; sum of squared deviations; the
   /// mean's low part below a float's last place.
   std::vector<glm::uvec4> mean, m2, rest;
@@ -61,9 +61,9 @@ std::uint32_t firstSampleOf(const std::filesystem::path& file);
 /// only two are in memory at a time. Sums in double.
 class FilmMerge {
  public:
-  /// Throws Error(badInput) if the film differs from the previous ones in scene, view, size or settings, is unfinished
-  /// (pixels with different numbers of samples, or none), repeats samples of a previous one, or leaves a gap between
-  /// them.
+  /// Throws Error(badInput) if the film has halves, differs from the previous ones in scene, view, size or settings, is
+  /// unfinished (pixels with different numbers of samples, or none), repeats samples of a previous one, or leaves a gap
+  /// between them.
   void add(const Film& film, const std::string& name);
   /// Requires at least one add().
   Film result() const;

@@ -56,6 +56,7 @@ PixelInspection inspectPaths(const gl::Context& context, gl::ProgramLibrary& pro
                              const Camera& camera, PathTracer::Settings settings, std::uint32_t samples,
                              glm::ivec2 pixel) {
   settings.inspectedPixel = glm::ivec2(pixel.x, settings.size.y - 1 - pixel.y);
+  settings.halves = false;
   PathTracer tracer(context, programs, scene, settings);
   tracer.setCamera(camera);
   PixelInspection answer;

@@ -28,6 +28,7 @@ struct PathSettings {
   std::uint32_t leastSamples = 1;  ///< minimum per pixel in the first frame of a view
   std::uint32_t scatterings = kAllScatterings;  ///< light with more scatterings is omitted
   std::uint32_t seed = 0;  ///< pictures of different seeds are independent
+  bool denoise = false;  ///< pathtracer/denoiser.hpp
   PathDeviations deviations;
 };
 

@@ -222,9 +222,9 @@ void PathTracer::allocateFilm() {
   const std::size_t inspection = settings_.inspectedPixel ? kInspectedWords : 0;
   state_ = gl::Buffer("path state", kStateHeaderBytes + (lanes * stateWords() + inspection) * kVec4Bytes, nullptr,
                       gl::Usage::dynamicCopy);
-  filmMean_ = gl::Texture("film mean", gl::Format::rgba32ui, settings_.size);
-  filmM2_ = gl::Texture("film M2", gl::Format::rgba32ui, settings_.size);
-  filmRest_ = gl::Texture("film rest", gl::Format::rgba32ui, settings_.size);
+  filmMean_ = gl::Texture("film mean", gl::Format::rgba32ui, filmSize());
+  filmM2_ = gl::Texture("film M2", gl::Format::rgba32ui, filmSize());
+  filmRest_ = gl::Texture("film rest", gl::Format::rgba32ui, filmSize());
   for (gl::Texture& texture : kept_) texture = gl::Texture("film kept", gl::Format::rgba32ui, tile);
 }
 
@@ -263,13 +263,15 @@ gl::ShaderFlags PathTracer::flags() const {
                          {"UNSCALED_REFRACTION", settings_.deviations.unscaledRefraction},
                          {"LINEAR_SEEDS", settings_.deviations.linearSeeds},
                          {"FIXED_EPSILON", settings_.deviations.fixedEpsilon},
-                         {"PIXEL_FILTER", settings_.filter == PixelFilter::centre ? 0
-                                          : settings_.filter == PixelFilter::box  ? 1
-                                                                                  : 2},
+                         {"PIXEL_FILTER", filterFlag(settings_.filter)},
                          {"UNOCCLUDED", settings_.transport == Transport::oneBounceUnoccluded},
                          {"FRESNEL_AMPLITUDES", settings_.deviations.fresnelAmplitudes},
                          {"FRESNEL_SCHLICK", settings_.deviations.schlick}});
   return all;
+}
+
+int PathTracer::filterFlag(PixelFilter filter) {
+  return filter == PixelFilter::centre ? 0 : filter == PixelFilter::box ? 1 : 2;
 }
 
 std::size_t PathTracer::stateWords() const {
@@ -283,6 +285,7 @@ gl::ShaderFlags PathTracer::kernelFlags() const {
   all.insert(all.end(), {{"SHARED_STACK", scene_->rays().sharedStack()},
                          {"STATE_WORDS", static_cast<int>(stateWords())},
                          {"INSPECTED", settings_.inspectedPixel.has_value()},
+                         {"HALVES", settings_.halves},
                          {"SHADOW_AT_ONCE", scene_->rays().sharedStack() == 0 && !hasInteriors()}});
   return all;
 }
@@ -351,13 +354,15 @@ std::uint64_t PathTracer::identity() const {
     hash.bytes(name.data(), name.size());
     hash.bytes(&value, sizeof value);
   }
+  if (settings_.halves) hash.add(std::uint64_t{2});
   return hash.value();
 }
 
 std::vector<std::uint8_t> PathTracer::checkpoint() const {
   Film film;
   film.identity = identity();
-  film.size = settings_.size;
+  film.size = filmSize();
+  film.halves = settings_.halves;
   film.first = static_cast<std::uint32_t>(constants_.picture.w);
   const std::array<const gl::Texture*, 3> films{&filmMean_, &filmM2_, &filmRest_};
   const std::array<std::vector<glm::uvec4>*, 3> planes{&film.mean, &film.m2, &film.rest};
@@ -369,23 +374,34 @@ std::vector<std::uint8_t> PathTracer::checkpoint() const {
     const std::vector<glm::uvec4> before = kept_[f].readWords();
     for (int y = 0; y < size.y; ++y)
       std::copy_n(before.begin() + static_cast<std::ptrdiff_t>(y) * kept_[f].size().x, size.x,
-                  words.begin() + static_cast<std::ptrdiff_t>(corner.y + y) * settings_.size.x + corner.x);
+                  words.begin() + static_cast<std::ptrdiff_t>(corner.y + y) * filmSize().x + corner.x);
   }
   return bytesOf(film);
 }
 
 void PathTracer::resume(const std::vector<std::uint8_t>& bytes, const std::string& name) {
   const Film film = filmOf(bytes, name);
-  if (film.size != settings_.size)
-    throwBadInput("{}: a checkpoint of {} x {} pixels; this picture has {} x {}", name, film.size.x, film.size.y,
-                  settings_.size.x, settings_.size.y);
+  if (film.halves != settings_.halves)
+    throwBadInput("{}: a checkpoint of a picture {} --denoise; this one is {} it", name,
+                  film.halves ? "with" : "without", settings_.halves ? "with" : "without");
+  if (film.size != filmSize())
+    throwBadInput("{}: a checkpoint of {} x {} pixels; this picture has {} x {}", name, film.size.x,
+                  film.size.y / (film.halves ? 2 : 1), settings_.size.x, settings_.size.y);
   if (film.identity != identity()) throwBadInput("{}: a checkpoint of another scene, view or setting", name);
   filmMean_.upload(gl::Texels::rgbaWord, film.mean.data());
   filmM2_.upload(gl::Texels::rgbaWord, film.m2.data());
   filmRest_.upload(gl::Texels::rgbaWord, film.rest.data());
   constants_.picture.w = static_cast<int>(film.first);
-  done_ = kUnlimited;
-  for (const glm::uvec4& word : film.mean) done_ = std::min(done_, word.w);
+  if (settings_.halves) {
+    std::array<std::uint32_t, 2> least{kUnlimited, kUnlimited};
+    const std::size_t half = film.mean.size() / 2;
+    for (std::size_t i = 0; i < film.mean.size(); ++i) least[i / half] = std::min(least[i / half], film.mean[i].w);
+    // The first half has the same number or one more; where it was stopped in between, it has more.
+    done_ = least[0] > least[1] ? 2 * least[1] + 1 : 2 * least[0];
+  } else {
+    done_ = kUnlimited;
+    for (const glm::uvec4& word : film.mean) done_ = std::min(done_, word.w);
+  }
   passTarget_ = done_;
   tile_ = 0;
   tileBegun_ = false;
@@ -393,14 +409,23 @@ void PathTracer::resume(const std::vector<std::uint8_t>& bytes, const std::strin
 
 PathTracer::Tile PathTracer::tile() const {
   if (settings_.inspectedPixel) return {*settings_.inspectedPixel, glm::ivec2(1)};
-  const int columns = (settings_.size.x + tileSide_ - 1) / tileSide_;
-  const glm::ivec2 corner = tileSide_ * glm::ivec2(tile_ % columns, tile_ / columns);
-  return {corner, glm::min(glm::ivec2(tileSide_), settings_.size - corner)};
+  const int columns = (settings_.size.x + tileSide_ - 1) / tileSide_, half = tile_ / tilesOfPicture(),
+            within = tile_ % tilesOfPicture();
+  const glm::ivec2 corner = tileSide_ * glm::ivec2(within % columns, within / columns);
+  return {corner + glm::ivec2(0, half * settings_.size.y), glm::min(glm::ivec2(tileSide_), settings_.size - corner)};
 }
 
-int PathTracer::tileCount() const {
+int PathTracer::tilesOfPicture() const {
   const glm::ivec2 tiles = (settings_.size + tileSide_ - 1) / tileSide_;
   return settings_.inspectedPixel ? 1 : tiles.x * tiles.y;
+}
+
+int PathTracer::tileCount() const { return tilesOfPicture() * (settings_.halves ? 2 : 1); }
+
+// The first half has one more of an odd number.
+std::uint32_t PathTracer::samplesOfTile(std::uint32_t samples) const {
+  if (!settings_.halves) return samples;
+  return tile_ < tilesOfPicture() ? samples / 2 + samples % 2 : samples / 2;
 }
 
 // The layout is that of shared/path_tracer.h.
@@ -459,7 +484,7 @@ bool PathTracer::submit(std::uint32_t samples, Passes passes) {
   state_.upload(0, sizeof zeros, &zeros);
 
   const auto start = Clock::now();
-  dispatch(corner, size, passTarget_);
+  dispatch(corner, size, samplesOfTile(passTarget_));
   const auto header = counters_.readFirst<StateHeader>(state_);
   const std::uint32_t unfinished = header.unfinished;
   leakedPaths_ += header.leakedPaths;
@@ -539,11 +564,23 @@ void PathTracer::dispatch(glm::ivec2 corner, glm::ivec2 size, std::uint32_t targ
 
 std::vector<PathTracer::Pixel> PathTracer::readFilm() const {
   const std::vector<glm::uvec4> mean = filmMean_.readWords(), m2 = filmM2_.readWords();
-  std::vector<Pixel> pixels(mean.size());
   const auto floats = [](const glm::uvec4& w) {
     return glm::vec3(std::bit_cast<float>(w.x), std::bit_cast<float>(w.y), std::bit_cast<float>(w.z));
   };
-  for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] = {floats(mean[i]), floats(m2[i]), mean[i].w};
+  const auto pixelAt = [&](std::size_t i) { return Pixel{floats(mean[i]), floats(m2[i]), mean[i].w}; };
+  std::vector<Pixel> pixels(static_cast<std::size_t>(settings_.size.x) * static_cast<std::size_t>(settings_.size.y));
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    pixels[i] = pixelAt(i);
+    if (!settings_.halves) continue;
+    // Both halves as one [ChanGolubLeVeque1983, pairwise update].
+    const Pixel a = pixels[i], b = pixelAt(i + pixels.size());
+    const double n = a.samples, m = b.samples;
+    if (b.samples == 0) continue;
+    const glm::dvec3 difference = glm::dvec3(b.mean) - glm::dvec3(a.mean);
+    pixels[i] = {glm::vec3(glm::dvec3(a.mean) + difference * (m / (n + m))),
+                 glm::vec3(glm::dvec3(a.m2) + glm::dvec3(b.m2) + difference * difference * (n * m / (n + m))),
+                 a.samples + b.samples};
+  }
   return pixels;
 }
 

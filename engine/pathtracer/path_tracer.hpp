@@ -49,6 +49,9 @@ class PathTracer {
     double submissionSeconds = 0.05;
     RayScene::Settings rays;
     PathDeviations deviations;
+    /// Two independent pictures of half the samples each, as the denoiser needs them (denoiser.hpp); mean() is of both.
+    /// Other random numbers than those of one picture, and a film of twice the size.
+    bool halves = false;
     /// The only pixel of the picture to trace, counted from the lower left; its light contributions are kept for
     /// takeInspected().
     std::optional<glm::ivec2> inspectedPixel;
@@ -106,8 +109,11 @@ class PathTracer {
   std::uint32_t samples() const { return done_; }  ///< in every pixel
   /// Whether no tile is in the middle of a pass, so that the film holds only whole passes.
   bool isBetweenTiles() const { return !tileBegun_; }
-  /// The film's means, as shaders/pathtracer/film.frag reads them.
+  /// The film's means, as shaders/pathtracer/film.frag reads them. With Settings::halves the second picture lies above
+  /// the first.
   void bindMean(GLuint unit) const { filmMean_.bind(unit); }
+  static int filterFlag(PixelFilter filter);  ///< PIXEL_FILTER of shaders/pathtracer/film_place.glsl
+  void bindSquares(GLuint unit) const { filmM2_.bind(unit); }
 
   Image mean() const;  ///< radiance, linear, scene units, top row first; pixels without a sample are 0
   Image standardError() const;  ///< of each pixel's mean; 0 below 2 samples
@@ -120,6 +126,8 @@ class PathTracer {
   void resume(const std::vector<std::uint8_t>& bytes, const std::string& name);
   const Settings& settings() const { return settings_; }
   const SceneFeatures& features() const { return features_; }
+  const PathScene& scene() const { return *scene_; }
+  const shared::PathConstants& constants() const { return constants_; }  ///< of the view
   std::size_t gpuBytes() const;
   /// Number of lanes times iterations of the slowest lane, for the largest submission so far; `begun`: among those that
   /// began a tile, whose cost was unknown. A lane begins no segment after its share of iterations, so it exceeds the
@@ -134,10 +142,11 @@ class PathTracer {
     glm::vec3 mean, m2;
     std::uint32_t samples;
   };
-  std::vector<Pixel> readFilm() const;
+  std::vector<Pixel> readFilm() const;  ///< of the picture: both halves as one
   std::uint64_t identity() const;  ///< hash of everything that determines the picture
   gl::ShaderFlags flags() const;
   void allocateFilm();
+  glm::ivec2 filmSize() const { return {settings_.size.x, settings_.size.y * (settings_.halves ? 2 : 1)}; }
   /// With flags that do not affect the picture but how it is computed.
   gl::ShaderFlags kernelFlags() const;
   std::size_t stateWords() const;  // of a lane in state_, in uvec4
@@ -154,7 +163,9 @@ class PathTracer {
     glm::ivec2 corner, size;
   };
   Tile tile() const;  ///< the current or next one
-  int tileCount() const;
+  int tileCount() const;  ///< of the film
+  int tilesOfPicture() const;
+  std::uint32_t samplesOfTile(std::uint32_t samples) const;  ///< its share of the picture's
   void readInspected();
 
   Settings settings_;

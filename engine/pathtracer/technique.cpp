@@ -16,6 +16,9 @@ std::span<const Setting> pathSettings() {
        number(SETTING_FIELD(PathSettings, scatterings), 0, 1000000, "all", PathSettings::kAllScatterings), "",
        "between light and camera; light scattered more often is left out (--bounces; 2 is one bounce)"},
       {"path.seed", number(SETTING_FIELD(PathSettings, seed), 0, 4294967295.0), "", "of the random numbers (--seed)"},
+      {"path.denoise", boolean(SETTING_FIELD(PathSettings, denoise)), "",
+       "fits to the surfaces seen take the noise's place where they are nearer to the truth (--denoise)",
+       "[Bitterli2016]"},
   };
   return table;
 }

@@ -9,7 +9,8 @@
 // instead.
 // Film: three images of 32-bit words that hold the bits of floats: mean and number of samples; sum of squared
 // deviations [Welford1962]; the low part of the mean below a float's last place, so that the mean keeps converging
-// however many samples there are.
+// however many samples there are. With HALVES it holds two independent pictures of half the samples, one above the
+// other; their pixels have other numbers, so other random numbers.
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "shared/path_tracer.h"
 layout(std140, binding = 0) uniform PathBlock { PathConstants tracer; };
@@ -543,6 +544,9 @@ void arrive(inout Path path, PathNumbers numbers) {
 }
 
 void beginPath(out Path path, ivec2 pixel, PathNumbers numbers) {
+#if HALVES  // the film's upper half is of the same pixels
+  pixel.y -= pixel.y < tracer.picture.y ? 0 : tracer.picture.y;
+#endif
   path = startPath(pixel, numbers);
   spill(path);
   startRadiance(path);

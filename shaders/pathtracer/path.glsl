@@ -4,6 +4,7 @@
 // Flag STATE_WORDS: of a lane in the state buffer. SPILLED, on GPUs: what is not needed while a ray is traced, or in
 // another stage, lies there instead of in registers. reload...() and spill...() do nothing otherwise.
 #define SPILLED (SHARED_STACK > 0)
+#include "pathtracer/film_place.glsl"
 
 layout(std430, binding = 5) restrict buffer StateBlock {
   uint unfinished;      // pixels of the tile that still lack samples
@@ -65,31 +66,9 @@ vec3 lightOf(Path path, vec3 light) {
   return path.throughput * light;
 }
 
-#if PIXEL_FILTER > 1
-float filterQuantile(int node) { return tracer.filterQuantiles[node >> 2][node & 3]; }
-
-// In pixels from the pixel's centre; share: of the filter below it.
-float filterOffset(float share) {
-  float place = acos(1.0 - 2.0 * share) * (63.0 / kPi);
-  int node = clampedInt(place, 0, 62);
-  return mix(filterQuantile(node), filterQuantile(node + 1), place - float(node));
-}
-#endif
-
 Path startPath(ivec2 pixel, PathNumbers numbers) {
-  vec2 place = vec2(pixel);  // PIXEL_FILTER: 0 through centres, 1 box, 2 by quantiles
-#if PIXEL_FILTER == 0
-  place += 0.5;
-#else
-  vec2 share = randomPair(numbers, 0u, kPurposeFilm);
-#if PIXEL_FILTER == 1
-  place += share;
-#else
-  place += 0.5 + vec2(filterOffset(share.x), filterOffset(share.y));
-#endif
-#endif
   Path path;
-  viewRay(place, path.origin, path.direction);
+  viewRay(filmPlace(pixel, numbers), path.origin, path.direction);
   path.skip = kNoHit;
   path.pdf = 0.0;
   path.throughput = vec3(1.0);

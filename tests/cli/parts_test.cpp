@@ -52,6 +52,26 @@ class Parts : public ::testing::Test {
   test::TempFolder folder_;
 };
 
+TEST_F(Parts, ADenoisedPictureHasNone) {
+  const std::string denoised = "render " + picture() + "--denoise --quiet -o '" + path("d.pfm") + "' ";
+  expectRefused(denoised + "--samples 0:4 --checkpoint '" + path("d.film") + "'", "--denoise");
+  ASSERT_EQ(
+      RUN_LUCERNA(denoised + "--spp 16 --json '" + path("d.json") + "' --checkpoint '" + path("d.film") + "'").exitCode,
+      0);
+  const nlohmann::json told = json("d.json").at("denoised");
+  EXPECT_TRUE(told.at("known").get<bool>());
+  EXPECT_LE(told.at("low").get<double>(), told.at("error").get<double>());
+  EXPECT_LE(told.at("error").get<double>(), told.at("high").get<double>());
+  EXPECT_LT(told.at("error").get<double>(), told.at("raw").get<double>());
+  expectRefused("merge '" + path("d.film") + "' --quiet -o '" + path("m.pfm") + "'", "denoised");
+  expectRefused(
+      "render " + picture() + "--spp 16 --quiet -o '" + path("r.pfm") + "' --checkpoint '" + path("d.film") + "'",
+      "--denoise");
+  expectRefused("render '" LUCERNA_SOURCE_DIR "/assets/cornell/cornell.json' --technique lpv --denoise -o '" +
+                    path("l.pfm") + "'",
+                "--technique path");
+}
+
 TEST_F(Parts, TogetherAreOneRun) {
   ASSERT_EQ(RUN_LUCERNA("render " + picture() + "--spp 48 --quiet -o '" + path("one.pfm") + "' --checkpoint '" +
                         path("one.film") + "' --json '" + path("one.json") + "'")
