@@ -72,7 +72,7 @@ std::vector<PathSeries> seriesOf(const ErrorBench& bench, bool deviations) {
   for (PathSeries& series : all) {
     series.lastPoint = deviations;
     if (deviations) series.seeds = 1;
-    series.seconds = bench.pathSeconds / (deviations ? static_cast<double>(all.size()) : 5.0);
+    series.seconds = bench.pathSeconds / (deviations ? static_cast<double>(all.size()) : 4.0);
   }
   return all;
 }
@@ -264,6 +264,8 @@ std::vector<ErrorRow> measurePath(const ErrorBench& bench, bool deviations) {
   for (PathSeries series : seriesOf(bench, deviations)) {
     // Deviations are compared at the number of samples that the corrected tracer had time for.
     if (deviations && !rows.empty()) series.samples = rows.front().at("spp").get<std::uint32_t>();
+    // So are denoised pictures, and at each number below it.
+    if (series.denoised && !rows.empty()) series.samples = rows.back().at("spp").get<std::uint32_t>();
     const std::filesystem::path file = rowFile(bench.folder, series.name);
     if (std::filesystem::exists(file)) {
       const ErrorRow known = ErrorRow::parse(readFileText(file), nullptr, false);
