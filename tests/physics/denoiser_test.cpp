@@ -85,7 +85,7 @@ class DenoiserPromise : public SharedProgramsTest {
         const double error = measure::nrmseInterval(denoiser.picture(), exact, own).value;
         const DenoisedError stated = denoiser.error();
         tally.held[k] += stated.known && stated.low <= error && error <= stated.high;
-        tally.width[k] += 0.5 * (stated.high - stated.low) / stated.value;
+        tally.width[k] += (stated.high - stated.low) / (stated.high + stated.low);
         if (!(stated.low <= error && error <= stated.high))
           fmt::print("{} view {}, {} samples: {:.4f} is not in {:.4f} to {:.4f}\n", file, i, kSamples[k], error,
                      stated.low, stated.high);
