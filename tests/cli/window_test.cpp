@@ -674,7 +674,8 @@ x.XSync(display, 0)
     EXPECT_GE(numberAfter(result.out, idle), 0) << result.out;
     EXPECT_LE(numberAfter(result.out, idle), 4) << result.out;
   }
-  for (const char* busy : {"works", "again"}) EXPECT_GT(numberAfter(result.out, busy), 40) << result.out;
+  // Two hundred on an idle core; other programs may take most of it.
+  for (const char* busy : {"works", "again"}) EXPECT_GT(numberAfter(result.out, busy), 12) << result.out;
   EXPECT_EQ(read("state/lucerna/recent-scenes"), fs::weakly_canonical(path("room.json")).string() + "\n");
 }
 
