@@ -229,7 +229,7 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
         statistics.mean.x, statistics.mean.y, statistics.mean.z, statistics.standardError, statistics.relativeError,
         seconds, context.capabilities().renderer);
   if (denoiser && !common.quiet) {
-    fmt::print("denoised");
+    fmt::print("{}", statistics.samples < 2.0 ? "not denoised, as one sample has no halves" : "denoised");
     if (denoised.known)
       fmt::print(": root mean square error {:.3g} of the mean, between {:.3g} and {:.3g} (99 %); {:.3g} before",
                  denoised.value, denoised.low, denoised.high, denoised.raw);

@@ -219,6 +219,7 @@ void WalkWindow::act(Action action) {
     case Action::end:
       if (s.help) s.help = false;
       else if (s.solving.isOn() && !s.asksToEnd) s.solving.cancelled = true;
+      else if (s.hemicube && !s.asksToEnd) s.hemicube.reset();
       else s.asksToEnd = !s.asksToEnd;
       break;
     case Action::pause: s.path.paused = !s.path.paused; break;

@@ -37,6 +37,8 @@ inline std::vector<std::string_view> nearestWords(std::string_view word, std::ve
     const std::size_t edits = std::min(editDistance(word, w), editDistance(afterDot(word), afterDot(w)) + 1);
     return std::pair(isBeginning ? std::size_t{1} : edits, beforeDot(word) != beforeDot(w));
   };
+  std::sort(words.begin(), words.end());
+  words.erase(std::unique(words.begin(), words.end()), words.end());
   std::ranges::stable_sort(words, {}, distance);
   words.resize(std::min(most, words.size()));
   return words;
