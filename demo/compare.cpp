@@ -1,10 +1,10 @@
 // lucerna compare A B: errors of A with B as the reference, with heat maps on request.
 #include "base/error.hpp"
 #include "base/files.hpp"
+#include "base/provenance.hpp"
 #include "shared/contact_sheet.hpp"
 #include "shared/figure.hpp"
 #include "shared/html.hpp"
-#include "base/provenance.hpp"
 #include "shared/commands.hpp"
 #include "measure/flip.hpp"
 #include "measure/heat_map.hpp"

@@ -5,10 +5,10 @@
 #include "base/files.hpp"
 #include "base/hash.hpp"
 #include "base/image.hpp"
+#include "base/provenance.hpp"
 #include "bench/bench.hpp"
 #include "bench/error_bench.hpp"
 #include "scene/motion.hpp"
-#include "base/provenance.hpp"
 #include "shared/completions.hpp"
 #include "shared/shell.hpp"
 

@@ -1,9 +1,9 @@
 // Output from the rows of `lucerna bench error`: terminal table, CSV, plots, HTML.
 #pragma once
 
+#include "base/provenance.hpp"
 #include "bench/error_rows.hpp"
 #include "shared/html.hpp"
-#include "base/provenance.hpp"
 
 namespace lucerna::demo::bench {
 

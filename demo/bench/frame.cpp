@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "base/statistics.hpp"
+#include "base/provenance.hpp"
 #include "bench/bench.hpp"
 #include "bench/error_bench.hpp"
 #include "bench/frame_page.hpp"
@@ -10,7 +11,6 @@
 #include "measure/heat_map.hpp"
 #include "pathtracer/path_sampler.hpp"
 #include "scene/scene_file.hpp"
-#include "base/provenance.hpp"
 #include "shared/shell.hpp"
 
 #include <fmt/format.h>

@@ -5,8 +5,8 @@
 // and is dropped.
 #include "base/error.hpp"
 #include "base/statistics.hpp"
-#include "originals/originals.hpp"
 #include "base/provenance.hpp"
+#include "originals/originals.hpp"
 #include "forward/gpu_scene.hpp"
 #include "forward/sun_frustum.hpp"
 #include "gl/pass.hpp"

@@ -28,60 +28,51 @@ TEST(DenoisedError, IsUnknownWithoutBlocksOrLight) {
   EXPECT_FALSE(denoisedError(std::vector<DenoisedBlock>(4, {0.0, 0.0, 0.0, 0.0}), 2, 1.0).known);
 }
 
-// A raw picture of normal noise: the estimate (A - B)^2 / 4 and the true (R - t)^2 are independent and equally spread.
-TEST(DenoisedError, HoldsTheTrueErrorOfNormalNoiseInNinetyNineOfAHundredViews) {
-  std::mt19937 random(1);
+constexpr int kViews = 2000;
+
+/// Views of kViews whose interval holds the true error. A raw picture of normal noise: in each block `values` times two
+/// halves, whose standard deviation is drawn by scaleOf, each for `channels` alike.
+template <class ScaleOf>
+int viewsHeld(std::mt19937& random, std::size_t blockCount, int columns, int values, double channels,
+              const ScaleOf& scaleOf) {
   std::normal_distribution<double> normal;
-  constexpr int kViews = 2000, kBlocks = 24;
   int held = 0;
   for (int view = 0; view < kViews; ++view) {
-    std::vector<DenoisedBlock> blocks(kBlocks);
+    std::vector<DenoisedBlock> blocks(blockCount);
     double truth = 0.0, count = 0.0;
     for (DenoisedBlock& b : blocks) {
-      for (int i = 0; i < 3 * 64; ++i) {
-        const double a = normal(random), c = normal(random);  // of the halves
-        b.error += (a - c) * (a - c) / 4.0;
-        truth += (a + c) * (a + c) / 4.0;
-        ++count;
+      for (int i = 0; i < values; ++i) {
+        const double scale = scaleOf();
+        const double a = scale * normal(random), c = scale * normal(random);
+        b.error += channels * (a - c) * (a - c) / 4.0;
+        truth += channels * (a + c) * (a + c) / 4.0;
+        count += channels;
       }
       b.heldOut = b.raw = b.error;
       b.pixels = 64.0;
     }
-    const DenoisedError error = denoisedError(blocks, 6, 1.0);
+    const DenoisedError error = denoisedError(blocks, columns, 1.0);
     const double own = std::sqrt(truth / count);
     held += own >= error.low && own <= error.high;
   }
+  return held;
+}
+
+// The estimate (A - B)^2 / 4 and the true (R - t)^2 are independent and equally spread.
+TEST(DenoisedError, HoldsTheTrueErrorOfNormalNoiseInNinetyNineOfAHundredViews) {
+  std::mt19937 random(1);
+  const int held = viewsHeld(random, 24, 6, 3 * 64, 1.0, [] { return 1.0; });
   // 99 % less four standard errors of 2000 trials, and what the scatter of neighbours costs a small sample.
   EXPECT_GE(held, static_cast<int>(0.97 * kViews));
   EXPECT_LT(held, kViews);
 }
 
-// One pixel in 250 holds almost all of the error: a dozen of them in a picture. 97 of 100 views are held,
-// 95 without the skewness.
+// One pixel in 250 holds almost all of the error: a dozen of them in a picture. 97 of 100 views are held, 95 without
+// the skewness.
 TEST(DenoisedError, HoldsTheTrueErrorWhereRarePixelsMakeIt) {
   std::mt19937 random(3);
-  std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> uniform;
-  constexpr int kViews = 2000, kBlocks = 48;
-  int held = 0;
-  for (int view = 0; view < kViews; ++view) {
-    std::vector<DenoisedBlock> blocks(kBlocks);
-    double truth = 0.0, count = 0.0;
-    for (DenoisedBlock& b : blocks) {
-      for (int i = 0; i < 64; ++i) {
-        const double scale = uniform(random) < 0.004 ? 20.0 : 0.1;
-        const double a = scale * normal(random), c = scale * normal(random);
-        b.error += 3.0 * (a - c) * (a - c) / 4.0;
-        truth += 3.0 * (a + c) * (a + c) / 4.0;
-        count += 3.0;
-      }
-      b.heldOut = b.raw = b.error;
-      b.pixels = 64.0;
-    }
-    const DenoisedError error = denoisedError(blocks, 8, 1.0);
-    const double own = std::sqrt(truth / count);
-    held += own >= error.low && own <= error.high;
-  }
+  const int held = viewsHeld(random, 48, 8, 64, 3.0, [&] { return uniform(random) < 0.004 ? 20.0 : 0.1; });
   EXPECT_GE(held, static_cast<int>(0.96 * kViews)) << held;
 }
 
