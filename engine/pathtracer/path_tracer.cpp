@@ -166,6 +166,10 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
       casterTriangles_ = gl::BufferTexture("path casters", gl::Format::rg32ui,
                                            casters.triangles.size() * sizeof(glm::uvec2), casters.triangles.data());
   }
+  if (knowsVisibility()) {
+    constantsBuffer_.upload(0, sizeof constants_, &constants_);
+    lightVisibility_.emplace(programs, scene, *scene_, constantsBuffer_);
+  }
   if (features_.denseMedia) addClearances(scene);
   if (features_.dielectrics || features_.nullBoundaries)
     interiors_ = storageOf("path interiors", boundaries_.interiors, capabilities);
@@ -245,6 +249,8 @@ gl::ShaderFlags PathTracer::flags() const {
                          {"MANIFOLDS", !casters_.empty()},
                          {"MEDIA", features_.media},
                          {"LAMPS_OUTSIDE", lampsOutside_},
+                         {"CANDIDATES", lightCandidates()},
+                         {"LIGHT_VISIBILITY", knowsVisibility()},
                          {"WALKS", features_.denseMedia},
                          {"HETEROGENEOUS", features_.heterogeneousMedia},
                          {"VOLUME_EMISSION", features_.volumeEmission},
@@ -514,9 +520,23 @@ bool PathTracer::seeksByManifolds() const {
          settings_.deviations == PathDeviations{} && settings_.transport != Transport::oneBounceUnoccluded;
 }
 
+// Published forms take one light as it is drawn, and a single one without a size gives no choice.
+int PathTracer::lightCandidates() const {
+  constexpr int kCandidates = 4;
+  const bool hasChoice = scene_->lightCount() > 1 || features_.emission || features_.environmentPicture;
+  return hasChoice && settings_.deviations == PathDeviations{} ? kCandidates : 1;
+}
+
+bool PathTracer::knowsVisibility() const {
+  const int kinds = (features_.directionalLight ? 1 : 0) + (features_.environmentPicture ? 1 : 0) +
+                    (features_.emission || features_.spotLights || features_.pointLights ? 1 : 0);
+  return lightCandidates() > 1 && kinds > 1 && !hasInteriors() && settings_.transport != Transport::oneBounceUnoccluded;
+}
+
 void PathTracer::bind(const gl::Program& program) {
   program.use();
   scene_->bind();
+  if (lightVisibility_) lightVisibility_->bind(program);
   constantsBuffer_.bindUniform(kConstantsBinding);
   state_.bindStorage(kStateBinding);
   if (hasInteriors()) {
@@ -627,7 +647,8 @@ PathTracer::Statistics PathTracer::statistics() const {
 std::size_t PathTracer::gpuBytes() const {
   std::size_t bytes = scene_->gpuBytes() + state_.bytes() + counters_.bytes() + constantsBuffer_.bytes() +
                       media_.bytes() + interiors_.bytes() + grids_.bytes() + densities_.bytes() + clearances_.bytes() +
-                      casterTriangles_.bytes() + filmMean_.bytes() + filmM2_.bytes() + filmRest_.bytes();
+                      casterTriangles_.bytes() + (lightVisibility_ ? lightVisibility_->gpuBytes() : 0) +
+                      filmMean_.bytes() + filmM2_.bytes() + filmRest_.bytes();
   for (const gl::Texture& texture : kept_) bytes += texture.bytes();
   return bytes;
 }

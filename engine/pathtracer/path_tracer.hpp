@@ -14,6 +14,7 @@
 #include "gl/chunks.hpp"
 #include "gl/program.hpp"
 #include "gl/read_back.hpp"
+#include "pathtracer/light_visibility.hpp"
 #include "pathtracer/media.hpp"
 #include "pathtracer/path_deviations.hpp"
 #include "rays/path_scene.hpp"
@@ -127,6 +128,8 @@ class PathTracer {
   const Settings& settings() const { return settings_; }
   const SceneFeatures& features() const { return features_; }
   const PathScene& scene() const { return *scene_; }
+  /// nullptr: nothing depends on it.
+  const LightVisibility* lightVisibility() const { return lightVisibility_ ? &*lightVisibility_ : nullptr; }
   const shared::PathConstants& constants() const { return constants_; }  ///< of the view
   std::size_t gpuBytes() const;
   /// Number of lanes times iterations of the slowest lane, for the largest submission so far; `begun`: among those that
@@ -159,6 +162,10 @@ class PathTracer {
   void bind(const gl::Program& program);
   /// Whether lamps are sought by way of refracting boundaries and mirrors.
   bool seeksByManifolds() const;
+  /// Samples of lights that next-event estimation chooses one from.
+  int lightCandidates() const;
+  /// Whether it pays to know what light reaches where: lights of several kinds, and no body that light passes through.
+  bool knowsVisibility() const;
   struct Tile {
     glm::ivec2 corner, size;
   };
@@ -176,6 +183,7 @@ class PathTracer {
   /// Mirrors and smooth refracting bodies (path_tracer.cpp); empty: no lamp is sought by way of them.
   std::vector<glm::vec4> casters_;
   std::vector<glm::uvec4> casterParts_;
+  std::optional<LightVisibility> lightVisibility_;
   PackedBoundaries boundaries_;
   bool touching_ = false;  ///< a boundary may coincide with or cross another surface
   int outerMedium_ = -1;

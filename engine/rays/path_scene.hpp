@@ -61,6 +61,7 @@ class PathScene {
   /// Fills in the environment and the probability of sampling it.
   void fill(shared::PathConstants& constants) const;
   bool hasLights() const { return lightCount_ > 0; }
+  std::size_t lightCount() const { return lightCount_; }  ///< entries of the table: each emissive triangle is one
   bool hasCoats() const { return hasCoats_; }
   const RayScene& rays() const { return rays_; }
   const glm::dvec3& origin() const { return rays_.origin(); }

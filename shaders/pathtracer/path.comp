@@ -46,53 +46,7 @@ uint collisionCount = 0u;  // of this lane, in this submission
 #include "pathtracer/flight.glsl"
 #endif
 #include "pathtracer/bsdf.glsl"
-
-#if NEXT_EVENT
-// iorBeyond, beyond: refractive index behind the surface, and the closed boundaries that contain that side.
-void addNextEvent(Path path, Surface surface, uint triangle, Bsdf bsdf, float iorBeyond, uvec4 beyond,
-                  PathNumbers numbers) {
-  LightSample light;
-  if (!sampleLight(surface.position, randomPair(numbers, path.event, kPurposeLight),
-                   randomWords(numbers, path.event, kPurposePick), light))
-    return;
-  float side = dot(light.direction, surface.geometricNormal), pdf;
-  vec3 start = beside(surface, side > 0.0 ? surface.geometricNormal : -surface.geometricNormal);
-#if SMOOTH_NORMALS && !FIXED_EPSILON
-  if (light.pdf == 0.0 && bsdf.kind != PATH_DIELECTRIC) {
-    ShadowStart bulging = shadowStart(surface, triangle);
-    if (bulging.skip == kNoHit) {
-      side = dot(light.direction, bulging.normal);
-      start = bulging.origin;
-      triangle = kNoHit;
-    }
-  }
-#endif
-  if (!(side * dot(light.direction, bsdf.normal) > 0.0)) return;
-#if ROUGH_DIELECTRICS
-  if (bsdf.kind != PATH_DIELECTRIC && side < 0.0) return;
-  if (side < 0.0) {
-    path.ior = iorBeyond;
-    path.inside = beyond;
-  }
-#else
-  if (side < 0.0) return;
-#endif
-  vec3 contribution = evaluate(bsdf, -path.direction, light.direction, pdf) * light.value;
-#if MIS
-  if (light.pdf > 0.0) contribution *= powerHeuristic(light.pdf, pdf);
-#endif
-#if LAMPS_OUTSIDE
-  if (path.ior != 1.0) return;  // a straight line across a refracting boundary does not reach a lamp
-#endif
-  if (all(equal(contribution, vec3(0.0)))) return;
-#if MEDIA && !FIXED_EPSILON
-  float head = gapAt(surface) / max(abs(side), 1e-4);
-#else
-  const float head = 0.0;
-#endif
-  queueShadowRay(path, contribution, start, light, triangle, head, numbers);
-}
-#endif
+#include "pathtracer/next_event.glsl"
 
 // Light from infinity.
 void addFromAfar(inout Path path, PathNumbers numbers) {

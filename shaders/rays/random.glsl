@@ -39,6 +39,9 @@ uint scaledWord(uint word, uint count) {
   return high;
 }
 
+// The k-th of `count` words that lie in equal parts of all 32-bit numbers; count: a power of two.
+uint stratifiedWord(uint word, uint k, uint count) { return word / count + k * (0xffffffffu / count + 1u); }
+
 struct PathNumbers {
   uint pixel;   // its index in the picture
   uint sampleIndex;

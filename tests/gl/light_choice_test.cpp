@@ -1,0 +1,132 @@
+// The choice of one light among several (shaders/pathtracer/next_event.glsl, light_visibility.comp): a sun that a roof
+// keeps out costs little, and the mean over many samples is the sum of all lights. Seeds are fixed; a mean may be 4
+// standard errors from its expectation.
+#include "pathtracer/light_visibility.hpp"
+#include "support/path_scenes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+
+namespace lucerna::test {
+namespace {
+
+constexpr double kSide = 8.0;  // of the floor about the origin, x and z
+constexpr double kRoof = 4.0;  // its height over the half with x < 0
+
+class LightChoice : public PathTest {
+ protected:
+  /// A floor with a lamp, of which half is under a roof.
+  static Scene underRoof(float sun, float lamp) {
+    SceneBuilder builder;
+    builder.plate(glm::dvec3(0.0), {0.0, 0.0, kSide}, {kSide, 0.0, 0.0}, builder.material(glm::vec3(0.5f)));
+    builder.plate({-0.25 * kSide, kRoof, 0.0}, {0.0, 0.0, kSide}, {0.5 * kSide, 0.0, 0.0},
+                  builder.material(glm::vec3(0.0f)));
+    if (lamp > 0.0f) {
+      const int light = builder.material(glm::vec3(0.0f));
+      builder.materialAt(light).emission = glm::vec3(lamp);
+      builder.plate({-2.0, 0.75 * kRoof, 0.0}, {1.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, light);
+    }
+    if (sun > 0.0f) builder.sun({0.0, -1.0, 0.0}, glm::vec3(sun)), builder.scene().sun->angularDiameter = 0.0;
+    else builder.scene().sun.reset();
+    return builder.scene();
+  }
+  /// Direct light on a part of the floor, seen from above the roof's edge.
+  PathTracer::Statistics seen(const Scene& scene, double x, std::uint32_t samples) {
+    Camera camera = lookingAt({x, 2.0, 0.0}, {x, 0.0, 0.0}, 0.6);
+    camera.up = {0.0, 0.0, 1.0};
+    PathTracer::Settings settings = sized(16);
+    settings.bounces = 1;
+    return tracer(scene, camera, settings, samples).statistics();
+  }
+};
+
+// By where each point lies, in double: the sun reaches what no roof is above.
+TEST_F(LightChoice, SharesOfTheSunAreThoseOfTheSamplePoints) {
+  const Scene scene = underRoof(1.0f, 1.0f);
+  const PathTracer rendered = tracer(scene, lookingAt({0.0, 2.0, 0.0}, glm::dvec3(0.0)), 8, 1);
+  ASSERT_TRUE(rendered.lightVisibility());
+  const std::vector<glm::uvec2> counts = rendered.lightVisibility()->counts();
+  const double cell = kSide / LightVisibility::kCells;
+  const int across = LightVisibility::kCells, high = static_cast<int>(std::ceil(kRoof / cell));
+  std::size_t lit = 0, dark = 0, reached = 0, sampled = 0;
+  for (int z = 0; z < across; ++z)
+    for (int x = 0; x < across; ++x) {
+      if (x == across / 2 - 1 || x == across / 2) continue;  // the roof's edge is above the line between them
+      const std::size_t at = static_cast<std::size_t>(x + across * high * z) * LightVisibility::kKinds;
+      const glm::uvec2 sun = counts[at];
+      EXPECT_GT(sun.x, 20u) << x << ' ' << z;
+      EXPECT_EQ(sun.y, x < across / 2 ? 0u : sun.x) << x << ' ' << z;
+      (x < across / 2 ? dark : lit) += 1;
+    }
+  EXPECT_EQ(lit, dark);
+  for (std::size_t i = 0; i < counts.size(); i += LightVisibility::kKinds)
+    sampled += counts[i].x, reached += counts[i].y;
+  // The sun's share of the table times the rays of all points: of the floor one half, of the roof all.
+  EXPECT_NEAR(static_cast<double>(reached) / static_cast<double>(sampled), 2.0 / 3.0, 0.02);
+}
+
+TEST_F(LightChoice, PointsLieOnTrianglesByArea) {
+  const Scene scene = underRoof(1.0f, 1.0f);
+  const std::vector<glm::uvec4> points = pointsOnSurfaces(scene, 9700);  // 64 of floor, 32 of roof, 1 of the lamp
+  ASSERT_EQ(points.size(), 9700u);
+  std::array<int, 3> ofPlate{};
+  glm::dvec2 mean(0.0);
+  for (const glm::uvec4& point : points) {
+    ++ofPlate[point.x / 2];
+    const double u = std::bit_cast<float>(point.y), v = std::bit_cast<float>(point.z);
+    EXPECT_GE(std::min(u, v), 0.0);
+    EXPECT_LE(u + v, 1.0);
+    mean += glm::dvec2(u, v) / 9700.0;
+  }
+  EXPECT_EQ(ofPlate, (std::array<int, 3>{6400, 3200, 100}));
+  EXPECT_NEAR(mean.x, 1.0 / 3.0, 0.002);
+  EXPECT_NEAR(mean.y, 1.0 / 3.0, 0.002);
+  EXPECT_TRUE(pointsOnSurfaces(Scene{}, 10).empty());
+}
+
+TEST_F(LightChoice, ASunThatARoofKeepsOutCostsLittle) {
+  const auto alone = seen(underRoof(0.0f, 1.0f), -2.0, 256), beside = seen(underRoof(1000.0f, 1.0f), -2.0, 256);
+  std::printf("[ measured ] relative error %.4f without the sun, %.4f with it\n", alone.relativeError,
+              beside.relativeError);
+  EXPECT_LT(deviations(alone, beside), 4.0);
+  EXPECT_LT(beside.relativeError, 0.12);  // 0.5 where the sun is chosen as if it shone here
+}
+
+TEST_F(LightChoice, TheMeanIsTheSumOfAllLights) {
+  Scene all = underRoof(2.0f, 3.0f);
+  PointLight point;
+  point.position = {1.0, 1.0, 0.5};
+  point.intensity = glm::vec3(2.0f, 1.0f, 0.5f);
+  all.points = {point};
+  Scene sun = underRoof(2.0f, 0.0f), lamp = underRoof(0.0f, 3.0f), bulb = underRoof(0.0f, 0.0f);
+  bulb.points = {point};
+  for (const double x : {0.0, 1.0, 2.5}) {
+    const auto together = seen(all, x, 1024);
+    glm::dvec3 mean(0.0), variance = together.meanError * together.meanError;
+    for (const Scene* part : {&sun, &lamp, &bulb}) {
+      const auto one = seen(*part, x, 1024);
+      mean += one.mean;
+      variance += one.meanError * one.meanError;
+    }
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(together.mean[c], mean[c], 4.0 * std::sqrt(variance[c])) << x << ' ' << c;
+    EXPECT_LT(std::sqrt(variance.x), 0.01 * mean.x);
+  }
+}
+
+// A published path tracer takes a light as it is drawn, and a single lamp leaves no choice: nothing is measured.
+TEST_F(LightChoice, WhatASceneDoesNotNeedIsNotThere) {
+  const auto lightsOf = [&](const Scene& scene, const PathTracer::Settings& settings) {
+    return tracer(scene, lookingAt({0.0, 2.0, 0.0}, glm::dvec3(0.0)), settings, 1).lightVisibility() != nullptr;
+  };
+  EXPECT_TRUE(lightsOf(underRoof(1.0f, 1.0f), sized(8)));
+  EXPECT_FALSE(lightsOf(underRoof(1.0f, 0.0f), sized(8)));
+  EXPECT_FALSE(lightsOf(underRoof(0.0f, 1.0f), sized(8)));
+  PathTracer::Settings published = sized(8);
+  published.deviations.linearSeeds = true;
+  EXPECT_FALSE(lightsOf(underRoof(1.0f, 1.0f), published));
+}
+
+}  // namespace
+}  // namespace lucerna::test
