@@ -522,7 +522,7 @@ bool PathTracer::seeksByManifolds() const {
 
 // Published forms take one light as it is drawn, and a single one without a size gives no choice.
 int PathTracer::lightCandidates() const {
-  constexpr int kCandidates = 4;
+  constexpr int kCandidates = 2;
   const bool hasChoice = scene_->lightCount() > 1 || features_.emission || features_.environmentPicture;
   return hasChoice && settings_.deviations == PathDeviations{} ? kCandidates : 1;
 }

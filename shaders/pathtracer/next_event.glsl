@@ -1,7 +1,7 @@
 // Next-event estimation at a surface: one shadow ray, to a light chosen by what it gives there. Of CANDIDATES samples
-// of lights one is chosen in proportion to what it would bring if nothing blocked it, times the share of such light that
-// reaches the cell, and now and then any of them: resampled importance sampling [Talbot2005]. It is unbiased for any
-// shares above 0, and for candidates that depend on each other, so they are stratified.
+// of lights one is chosen in proportion to what it would bring if nothing blocked it, times the share of such light
+// that reaches the cell, and now and then any of them: resampled importance sampling [Talbot2005]. It is unbiased for
+// any shares above 0, and for candidates that depend on each other, so they are stratified.
 //
 // Flags: CANDIDATES; LIGHT_VISIBILITY: shares are known, else 1.
 #if NEXT_EVENT
@@ -47,46 +47,37 @@ void addNextEvent(Path path, Surface surface, uint triangle, Bsdf bsdf, float io
   uint cell = lightCellAt(surface.position);
 #endif
 
-  // One of the candidates; the loop's last turn samples it again, so that only its number is kept.
-  uvec4 words = randomWords(numbers, path.event, kPurposePick), draw = words;
+  // One of the candidates.
+  uvec4 words = randomWords(numbers, path.event, kPurposePick), draw = pcg4d(words);
   vec2 xi = randomPair(numbers, path.event, kPurposeLight);
-  LightSample light;
+  bool isByLight = unitFloat(pcg4d(draw).x) < kByLight;
+  LightSample light = LightSample(vec3(0.0), 0.0, vec3(0.0), vec3(0.0), false), candidate = light;
   vec3 contribution = vec3(0.0);
-  float side = 0.0, sum = 0.0, share = 1.0;
-  uint count = 0u, chosen = 0u, byLight = 0u, byNumber = 0u;
-  float weightByLight = 0.0, weightByNumber = 0.0;
-  for (uint turn = CANDIDATES > 1 ? 0u : 1u; turn <= uint(CANDIDATES); ++turn) {
-    bool isLast = turn == uint(CANDIDATES);
-#if CANDIDATES > 1
-    if (isLast) {
-      if (count == 0u) return;
-      bool isByLight = unitFloat(draw.z) < kByLight;
-      chosen = isByLight ? byLight : byNumber;
-      share = kByLight * (isByLight ? weightByLight : weightByNumber) / sum + (1.0 - kByLight) / float(count);
-    }
-#endif
-    uint k = isLast ? chosen : turn;
-    uvec4 pickWords = pcg4d(words + uvec4(0u, k, 0u, 0u));
-    pickWords.x = stratifiedWord(words.x, k, uint(CANDIDATES));
+  float side = 0.0, chosenWeight = 1.0, sum = 0.0;
+  uint count = 0u, chosen = 0u;
+  for (uint k = 0u; k < uint(CANDIDATES); ++k) {
+    uvec4 pickWords = uvec4(stratifiedWord(words.x, k, uint(CANDIDATES)), words.yzw + k * 0x9e3779b9u);
     vec2 shift = vec2(float(k) / float(CANDIDATES), 0.618034 * float(k));
-    bool reaches = sampleLight(surface.position, fract(xi + shift), pickWords, light);
-    side = dot(light.direction, light.pdf == 0.0 ? towards : surface.geometricNormal);
-    contribution = reaches ? unblockedLight(path, bsdf, light, side) : vec3(0.0);
-#if CANDIDATES > 1
-    float weight = dot(path.throughput, contribution);
+    if (!sampleLight(surface.position, fract(xi + shift), pickWords, candidate)) continue;
+    float candidateSide = dot(candidate.direction, candidate.pdf == 0.0 ? towards : surface.geometricNormal);
+    vec3 brought = unblockedLight(path, bsdf, candidate, candidateSide);
+    if (all(equal(brought, vec3(0.0)))) continue;
+    float weight = clamp(dot(path.throughput, brought), 1e-30, 1e30);  // sums and quotients stay finite
 #if LIGHT_VISIBILITY
     weight *= reachingShare(cell, lights[pickedLight].kind);
 #endif
-    if (isLast || !(weight > 0.0)) continue;
     ++count;
     sum += weight;
-    draw = pcg4d(draw);
-    if (unitFloat(draw.x) * sum < weight) byLight = k, weightByLight = weight;
-    if (unitFloat(draw.y) * float(count) < 1.0) byNumber = k, weightByNumber = weight;
-#endif
+    if (unitFloat(draw[k & 3u]) * (isByLight ? sum : float(count)) >= (isByLight ? weight : 1.0)) continue;
+    contribution = brought;
+    light = candidate;
+    side = candidateSide;
+    chosenWeight = weight;
+    chosen = pickedLight;
   }
-  if (all(equal(contribution, vec3(0.0)))) return;
-  contribution /= share * float(CANDIDATES);
+  if (count == 0u) return;
+  contribution /= (kByLight * chosenWeight / sum + (1.0 - kByLight) / float(count)) * float(CANDIDATES);
+  pickedLight = chosen;
 
   // Its ray.
   vec3 start = beside(surface, side > 0.0 ? surface.geometricNormal : -surface.geometricNormal);
