@@ -38,9 +38,14 @@ LocalLights::LocalLights(gl::ProgramLibrary& programs, const GpuScene& scene, co
       pointViews_.push_back({light.clipFromPlace(face), light.place()});
     // Window depth of a perspective view at the distance m along its axis: f / (f - n) - f n / ((f - n) m).
     const double span = light.far - light.near;
-    constants.points[i] = {light.place(),   static_cast<float>(light.texelWidth(settings.pointSize)),
-                           light.intensity, static_cast<float>(light.far * light.near / span),
-                           static_cast<float>(light.radius), 0.0f, 0.0f, static_cast<float>(light.far / span)};
+    constants.points[i] = {light.place(),
+                           static_cast<float>(light.texelWidth(settings.pointSize)),
+                           light.intensity,
+                           static_cast<float>(light.far * light.near / span),
+                           static_cast<float>(light.radius),
+                           0.0f,
+                           0.0f,
+                           static_cast<float>(light.far / span)};
   }
   constants_ = gl::Buffer("lights", sizeof constants, &constants, gl::Usage::staticDraw);
   std::vector<shared::PlainLamp> lamps;
@@ -52,13 +57,13 @@ LocalLights::LocalLights(gl::ProgramLibrary& programs, const GpuScene& scene, co
     plain_ = gl::Buffer("lamps without shadows", lamps.size() * sizeof lamps[0], lamps.data(), gl::Usage::staticDraw);
   const int spotLayers = static_cast<int>(spotViews_.size()), pointLayers = static_cast<int>(pointViews_.size());
   if (spotLayers > 0)
-    spotShadows_.emplace(programs, scene, "spot shadows",
-                         LayeredDepth::Shape{gl::TextureKind::array, settings.spotSize, spotLayers, spotLayers, true,
-                                             spotsAreSoft_});
+    spotShadows_.emplace(
+        programs, scene, "spot shadows",
+        LayeredDepth::Shape{gl::TextureKind::array, settings.spotSize, spotLayers, spotLayers, true, spotsAreSoft_});
   if (pointLayers > 0)
-    pointShadows_.emplace(programs, scene, "point shadows",
-                          LayeredDepth::Shape{gl::TextureKind::cubeArray, settings.pointSize, pointLayers, 6, true,
-                                              pointsAreSoft_});
+    pointShadows_.emplace(
+        programs, scene, "point shadows",
+        LayeredDepth::Shape{gl::TextureKind::cubeArray, settings.pointSize, pointLayers, 6, true, pointsAreSoft_});
 }
 
 void LocalLights::bindForShading() const {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 
 namespace lucerna {
 
@@ -65,7 +66,7 @@ std::vector<float> samplesOf(const Level& level) {
   return samples;
 }
 
-constexpr float kCut = 127.5f;
+constexpr float kCut = 127.5f, kAbove = 128.0f;
 
 double coverageOf(const Level& level) {
   const std::vector<float> samples = samplesOf(level);
@@ -86,13 +87,19 @@ std::vector<std::vector<std::uint8_t>> maskLevels(const std::vector<std::uint8_t
   while (level.size != glm::ivec2(1)) {
     level = halved(level);
     std::vector<float> samples = samplesOf(level);
-    // The value that as many samples reach as shall be covered is brought to the cut.
-    const auto covered = static_cast<std::size_t>(std::lround(coverage * static_cast<double>(samples.size())));
+    // The value that as many samples reach as shall be covered is brought to the cut. Of equal samples all count or
+    // none, whichever is nearer.
+    const double covered = coverage * static_cast<double>(samples.size());
     float scale = 1.0f;
-    if (covered > 0 && covered < samples.size()) {
-      const auto least = samples.begin() + static_cast<std::ptrdiff_t>(samples.size() - covered);
-      std::nth_element(samples.begin(), least, samples.end());
-      scale = *least > 0.0f ? kCut / *least : 1.0f;
+    if (covered > 0.0 && covered < static_cast<double>(samples.size())) {
+      std::ranges::sort(samples, std::greater<>{});
+      const float value = samples[static_cast<std::size_t>(covered)];
+      const auto first = std::lower_bound(samples.begin(), samples.end(), value, std::greater<>{}),
+                 last = std::upper_bound(samples.begin(), samples.end(), value, std::greater<>{});
+      const bool counts = static_cast<double>(last - samples.begin()) - covered <
+                          covered - static_cast<double>(first - samples.begin());
+      const float least = counts || first == samples.begin() ? value : *(first - 1);
+      if (least > 0.0f) scale = (counts || first != samples.begin() ? kAbove : kCut - 1.0f) / least;
     }
     std::vector<std::uint8_t>& stored = levels.emplace_back();
     for (const float value : level.values)

@@ -37,8 +37,8 @@ std::span<const Setting> sharedSettings() {
        "casts them is far",
        "[Fernando2005]", rebuild, "shadow.transport=map", "", "shadows"},
       {"shadow.taps", number(FRAME_FIELD(shadow.taps), 2, 256), "a frame",
-       "lookups in a penumbra; half as many look for what casts it", "[Fernando2005]", rebuild, "shadow.filter=pcss", "",
-       "shadows"},
+       "lookups in a penumbra; half as many look for what casts it", "[Fernando2005]", rebuild, "shadow.filter=pcss",
+       "", "shadows"},
       {"shadow.lamps", number(FRAME_FIELD(lights.shadows), 0, LIGHTS_MAX_SHADOWS), "of a kind",
        "spots, and omnidirectional lights, with shadow maps, at most: those that light the scene most; rays find the "
        "shadows of the others",

@@ -1,6 +1,6 @@
 // Incoming light from spot and omnidirectional lights: E = I(omega) cos / d^2. The flags SPOTS and POINTS give the
-// numbers of those with shadow maps, SOFT_SPOTS and SOFT_POINTS the same if any of them has a size; PLAIN_LAMPS: whether
-// there are others. Soft ones need forward/shadow_filter.glsl.
+// numbers of those with shadow maps, SOFT_SPOTS and SOFT_POINTS the same if any of them has a size; PLAIN_LAMPS:
+// whether there are others. Soft ones need forward/shadow_filter.glsl.
 #include "shared/bindings.h"
 #include "lib/spot.glsl"
 #include "shared/lights.h"
@@ -87,7 +87,8 @@ Arriving spotLight(int i, vec3 position, vec3 normal, vec3 lifted, vec3 faceNorm
       spotFalloff(-dot(result.toLight, lights.spots[i].direction), lights.spots[i].cosInner, lights.spots[i].cosOuter);
   if (result.cosine <= 0.0 || falloff <= 0.0) return result;
   float depth = -dot(away, lights.spots[i].direction);
-  vec3 offset = faceNormal * ((SOFT_SPOTS > 0 ? kSoftNormalOffset : kNormalOffset) * lights.spots[i].shadowTexel * depth);
+  float texels = SOFT_SPOTS > 0 ? kSoftNormalOffset : kNormalOffset;
+  vec3 offset = faceNormal * (texels * lights.spots[i].shadowTexel * depth);
   float visible = spotVisibility(i, lifted - position + offset - away, faceNormal);
   result.irradiance = lights.spots[i].intensity * (falloff * result.cosine / distance2 * visible);
   return result;
@@ -129,17 +130,16 @@ Arriving pointLight(int i, vec3 position, vec3 normal, vec3 lifted, vec3 faceNor
   float distance2 = dot(away, away);
   Arriving result = Arriving(vec3(0.0), away * inversesqrt(max(distance2, kTouching)), 0.0);
   result.cosine = dot(normal, result.toLight);
-#if SOFT_POINTS
-  if (result.cosine <= 0.0) return result;
-#endif
-  // All lanes compare with the map, lit or not: GLSL has no comparison in a cube map without derivatives.
+  // All lanes look up a map that compares, lit or not: GLSL has no lookup in a cube's shadow map without derivatives.
   // Depth is measured along the face's axis, that of the largest component.
   vec3 size = abs(away);
   float texel = lights.points[i].shadowTexel * max(size.x, max(size.y, size.z));
   vec3 offset = faceNormal * ((SOFT_POINTS > 0 ? kSoftNormalOffset : kNormalOffset) * texel);
   vec3 u = size.x >= size.y && size.x >= size.z ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
   vec3 v = size.z > size.x && size.z > size.y ? vec3(0.0, 1.0, 0.0) : vec3(0.0, 0.0, 1.0);
-  float visible = pointVisibility(i, lifted - position + offset - away, faceNormal, u, v, texel);
+  float visible = 0.0;
+  if (SOFT_POINTS == 0 || result.cosine > 0.0)
+    visible = pointVisibility(i, lifted - position + offset - away, faceNormal, u, v, texel);
   if (result.cosine > 0.0) result.irradiance = lights.points[i].intensity * (result.cosine / distance2 * visible);
   return result;
 }
