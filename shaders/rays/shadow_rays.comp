@@ -1,7 +1,7 @@
 // Which lights reach the surface at a point of each pixel: one bit a light, the sun's first where there is one, then
-// the lamps', 128 in a layer. One ray goes to each light, to a point of its disc or ball that differs from pixel to pixel and from
-// sample to sample, so that the mean of a pixel's samples is the visible share. A pixel with one sample looks at the
-// middle.
+// the lamps', 128 in a layer. One ray goes to each light, to a point of its disc or ball that differs from pixel to
+// pixel and from sample to sample, so that the mean of a pixel's samples is the visible share. A pixel with one sample
+// looks at the middle.
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "shared/bindings.h"
 #include "shared/lights.h"

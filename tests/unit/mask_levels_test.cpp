@@ -32,13 +32,15 @@ double coverageOf(const std::vector<std::uint8_t>& texels, glm::ivec2 size) {
   return covered / (static_cast<double>(kSide) * kSide);
 }
 
-/// Discs on a jittered grid, which cover about `share` of the picture.
+/// Discs in the cells of a grid, none in its middle, which cover about `share` of the picture.
 std::vector<std::uint8_t> leaves(glm::ivec2 size, int across, double share) {
   std::vector<std::uint8_t> texels;
   const double cell = static_cast<double>(size.x) / across, radius = cell * std::sqrt(share / 3.14159265358979);
   for (int y = 0; y < size.y; ++y)
     for (int x = 0; x < size.x; ++x) {
-      const double u = std::fmod(x + 0.5, cell) - 0.5 * cell, v = std::fmod(y + 0.5, cell) - 0.5 * cell;
+      const double column = std::floor((x + 0.5) / cell), row = std::floor((y + 0.5) / cell),
+                   u = x + 0.5 - cell * (column + 0.5 + 0.2 * std::sin(7.0 * column + 3.0 * row)),
+                   v = y + 0.5 - cell * (row + 0.5 + 0.2 * std::cos(5.0 * column - 4.0 * row));
       texels.push_back(std::hypot(u, v) < radius ? 255 : 0);
     }
   return texels;
