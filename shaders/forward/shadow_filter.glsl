@@ -90,7 +90,7 @@ float pastDistantBlockers(ShadowReceiver receiver) {
     vec2 offset = receiver.spread * (reach * radius * direction);
     float stored = storedDepth(receiver, receiver.place + offset), height = receiver.depth - stored;
     if (stored < receiver.depth + dot(receiver.slope, offset) - receiver.distant && height > 0.0) {
-      float outside = reach * radius / height, weight = 1.0 / (1.0 + outside * outside * outside * outside);
+      float outside = reach * radius / height, weight = 1.0 / (1.0 + pow(outside, 8.0));
       found += weight;
       heights += weight * height;
     }

@@ -126,13 +126,43 @@ TEST_F(RoundLights, PenumbraeOfMapsAreAsWideAsTheBlockerIsFar) {
   }
 }
 
+TEST_F(RoundLights, PenumbraeOfASlantingSunInAMapAreThoseOfPaths) {
+  HalfCoveredFloor scene(true);
+  scene.cameras.front().position.x = 1.6;
+  scene.sun =
+      DirectionalLight{glm::normalize(glm::dvec3(0.8, -1.0, 0.3)), glm::vec3(static_cast<float>(kPi)), 10.0 * kDegree};
+  const Image map = drawn(scene, ShadowTransport::map, 64), paths = traced(scene);
+  for (int x = 0; x < kFloorPixels; ++x) EXPECT_NEAR(map.at(x, 0).x, paths.at(x, 0).x, 0.04) << x;
+}
+
+// A second blocker near the floor: it does not narrow the first one's penumbra beside it, and below it, there is no
+// light, though the first one's penumbra is partly lit.
+TEST_F(RoundLights, PenumbraeOfMapsTellNearBlockersFromFarOnes) {
+  HalfCoveredFloor scene(true);
+  scene.add(0.3, 0.45, 1.0);
+  scene.add(0.02, 0.1, 0.2);
+  scene.meshes[0].indexCount = static_cast<std::uint32_t>(scene.indices.size());
+  scene.sun = DirectionalLight{{0.0, -1.0, 0.0}, glm::vec3(static_cast<float>(kPi)), 20.0 * kDegree};
+  scene.cameras.front().position.y = 0.01;
+  const Image image = drawn(scene, ShadowTransport::map, 64);
+  for (int x = 0; x < kFloorPixels; ++x) {
+    const double place = placeOf(x), share = shareOfDisc(place / (2.0 * std::tan(10.0 * kDegree)));
+    const bool isBelow = place > 0.13 && place < 0.17;
+    if (place < 0.07 || isBelow || (place > 0.23 && place < 0.38)) {
+      EXPECT_NEAR(image.at(x, 0).x, isBelow ? 0.0 : share, isBelow ? 0.0 : 0.06) << place;
+    }
+  }
+}
+
 TEST_F(RoundLights, PenumbraeOfLampsInMapsAreThoseOfTheirBalls) {
   HalfCoveredFloor scene(true);
   for (const bool isSpot : {false, true}) {
-    for (const double aside : {0.0, 1.9}) {  // below the lamp, and half-way to the corner of its view
+    // Below the lamp, half-way to the corner of its view, and at the edge of a cube map's face.
+    for (const glm::dvec2& aside : {glm::dvec2(0.0, 0.0), glm::dvec2(1.9, 1.9), glm::dvec2(2.0, 0.0)}) {
       scene.points.clear();
       scene.spots.clear();
-      const glm::dvec3 place(-aside, 4.0, aside);
+      const glm::dvec3 place(-aside.x, 4.0, aside.y);
+      scene.cameras.front().position.x = aside.x;
       if (isSpot) scene.spots = {SpotLight{place, {0, -1, 0}, glm::vec3(16.0f), 1.2, 1.39, 0.5}};
       else scene.points = {PointLight{place, glm::vec3(16.0f), 0.5}};
       const Image maps = drawn(scene, ShadowTransport::map, 64), paths = traced(scene),
@@ -144,9 +174,10 @@ TEST_F(RoundLights, PenumbraeOfLampsInMapsAreThoseOfTheirBalls) {
         ofTent = std::max(ofTent, static_cast<double>(std::abs(tent.at(x, 0).x - paths.at(x, 0).x)));
       }
       std::printf("%s, %g aside: at most %.4f of the light off, without penumbrae %.4f\n", isSpot ? "spot" : "lamp",
-                  aside, worst / largest, ofTent / largest);
-      EXPECT_LT(worst, 0.04 * largest) << isSpot << aside;
-      EXPECT_GT(ofTent, 0.2 * largest) << isSpot << aside;
+                  aside.x, worst / largest, ofTent / largest);
+      // On a slanting plane the blockers found are not all as far as the edge.
+      EXPECT_LT(worst, (aside.x > 0.0 ? 0.085 : 0.01) * largest) << isSpot << aside.x;
+      EXPECT_GT(ofTent, 0.2 * largest) << isSpot << aside.x;
     }
   }
 }
@@ -252,16 +283,15 @@ TEST_F(RoundLights, LightsWithoutASizeHaveTheShadowsOfMaps) {
 // With maps, all but four by rays; of more than 128 lamps, bits in a second layer.
 TEST_F(RoundLights, AllOfManyLampsHaveShadows) {
   HalfCoveredFloor scene(true);
-  for (int i = 0; i < 140; ++i) scene.points.push_back({{-0.3 - 0.001 * i, 3.0, 0.0}, glm::vec3(1.0f)});
+  for (int i = 0; i < 140; ++i)  // the last twelve are below what covers the floor
+    scene.points.push_back({{-0.3 - 0.001 * i, i < 128 ? 3.0 : 1.5, 0.0}, glm::vec3(1.0f)});
   for (int i = 0; i < 3; ++i)
     scene.spots.push_back({{-0.3 - 0.001 * i, 3.0, 0.0}, {0.0, -1.0, 0.0}, glm::vec3(1.0f), 1.1, 1.2});
   const Image paths = traced(scene, 2048);
   for (const ShadowTransport transport : {ShadowTransport::map, ShadowTransport::rays}) {
     const Image image = drawn(scene, transport, 1);
-    EXPECT_NEAR(image.at(kFloorPixels - 1, 0).x / paths.at(kFloorPixels - 1, 0).x, 1.0, 0.03);
-    EXPECT_EQ(image.at(0, 0).x, 0.0f);
+    for (const int x : {0, kFloorPixels - 1}) EXPECT_NEAR(image.at(x, 0).x / paths.at(x, 0).x, 1.0, 0.04) << x;
   }
-  EXPECT_EQ(paths.at(0, 0).x, 0.0f);
 }
 
 }  // namespace
