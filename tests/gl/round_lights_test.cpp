@@ -294,5 +294,28 @@ TEST_F(RoundLights, AllOfManyLampsHaveShadows) {
   }
 }
 
+// Of more lamps than have maps, one is carried from where it lights the floor to above what covers it.
+TEST_F(RoundLights, ACarriedLampHasItsShadow) {
+  HalfCoveredFloor scene(true);
+  for (int i = 0; i < 6; ++i) scene.points.push_back({{-1.0, 3.0 + 0.1 * i, 0.0}, glm::vec3(1.0f)});
+  for (std::size_t carried = 0; carried < scene.points.size(); ++carried) {
+    HalfCoveredFloor moving = scene;
+    moving.points[carried].position = {-1.0, 1.5, 0.3};
+    RenderSettings settings;
+    settings.technique = "direct";
+    settings.size = {kFloorPixels, kFloorRows};
+    settings.fullFloatTarget = true;
+    Renderer renderer(context(), programs(), moving, settings);
+    renderer.render(moving.cameras.front());
+    EXPECT_GT(renderer.readRadiance().at(8, 0).x, 0.1f) << carried;
+    moving.points[carried] = scene.points[carried];
+    SceneChange change;
+    change.lamps = true;
+    ASSERT_TRUE(renderer.follow(context(), programs(), moving, change));
+    renderer.render(moving.cameras.front());
+    EXPECT_EQ(renderer.readRadiance().at(8, 0).x, 0.0f) << carried;
+  }
+}
+
 }  // namespace
 }  // namespace lucerna
