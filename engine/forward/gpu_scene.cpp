@@ -1,6 +1,7 @@
 #include "forward/gpu_scene.hpp"
 
 #include "base/error.hpp"
+#include "forward/mask_levels.hpp"
 #include "gl/draw.hpp"
 #include "scene/coat.hpp"
 #include "scene/motion.hpp"
@@ -79,10 +80,14 @@ GpuScene::GpuScene(const Scene& scene, const SceneFeatures& features, const gl::
     if (use.format == gl::Format::r8) {
       const std::size_t channel = bitmap.hasAlpha ? 3 : 0;
       for (std::size_t i = 0; i < texels.size() / 4; ++i) texels[i] = texels[4 * i + channel];
+      texels.resize(texels.size() / 4);
       target.upload(gl::Texels::redByte, texels.data());
-    } else {
-      target.upload(gl::Texels::rgbaByte, texels.data());
+      int level = 0;
+      for (const std::vector<std::uint8_t>& smaller : maskLevels(texels, {bitmap.width, bitmap.height}))
+        target.upload(gl::Texels::redByte, smaller.data(), ++level);
+      return place->second;
     }
+    target.upload(gl::Texels::rgbaByte, texels.data());
     target.generateMipmaps();
     return place->second;
   };

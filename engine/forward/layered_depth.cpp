@@ -14,7 +14,7 @@ LayeredDepth::LayeredDepth(gl::ProgramLibrary& programs, const GpuScene& scene, 
   const auto load = [&](bool masked) {
     return &programs.loadRaster(fmt::format("{} {}", name, masked ? "masked" : "opaque"), "forward/depth_layered.vert",
                                 masked ? "forward/depth.frag" : "",
-                                {{"ALPHA_MASK", masked}, {"LAYERS", shape.layersPerDraw}, {"LAMPS", !shape.followed}},
+                                {{"ALPHA_MASK", masked}, {"LAYERS", shape.layersPerDraw}, {"LAMPS", shape.lamps}},
                                 "forward/depth_layered.geom");
   };
   programs_.opaque = load(false);

@@ -17,6 +17,7 @@ class LayeredDepth {
     int size;  ///< texels per side
     int layers;  ///< of cube maps: 6 each
     int layersPerDraw;  ///< filled by one draw of the scene; divides `layers`
+    bool lamps = false;  ///< surfaces that hold a lamp do not shade it
     bool followed = false;  ///< read as depths, by the receiver's plane; else compared, with an offset by slope
   };
   LayeredDepth(gl::ProgramLibrary& programs, const GpuScene& scene, const std::string& name, const Shape& shape);

@@ -13,6 +13,11 @@ LocalLights::LocalLights(gl::ProgramLibrary& programs, const GpuScene& scene, co
                          const std::vector<LightViews>& plain) {
   CHECK(std::max(spots.size(), points.size()) <= LIGHTS_MAX_SHADOWS, "{} spots, {} points", spots.size(),
         points.size());
+  const auto areSoft = [&](const std::vector<LightViews>& lamps) {
+    return settings.penumbrae && std::ranges::any_of(lamps, [](const LightViews& lamp) { return lamp.radius > 0.0; });
+  };
+  spotsAreSoft_ = areSoft(spots);
+  pointsAreSoft_ = areSoft(points);
   shared::LightConstants constants{};
   for (std::size_t i = 0; i < spots.size(); ++i) {
     const LightViews& light = spots[i];
@@ -23,7 +28,9 @@ LocalLights::LocalLights(gl::ProgramLibrary& programs, const GpuScene& scene, co
                           glm::vec3(light.direction),
                           static_cast<float>(light.cosOuter),
                           light.intensity,
-                          static_cast<float>(light.texelWidth(settings.spotSize))};
+                          static_cast<float>(light.texelWidth(settings.spotSize)),
+                          glm::vec3(0.0f),
+                          static_cast<float>(light.radius)};
   }
   for (std::size_t i = 0; i < points.size(); ++i) {
     const LightViews& light = points[i];
@@ -31,9 +38,14 @@ LocalLights::LocalLights(gl::ProgramLibrary& programs, const GpuScene& scene, co
       pointViews_.push_back({light.clipFromPlace(face), light.place()});
     // Window depth of a perspective view at the distance m along its axis: f / (f - n) - f n / ((f - n) m).
     const double span = light.far - light.near;
-    constants.points[i] = {light.place(),   static_cast<float>(light.texelWidth(settings.pointSize)),
-                           light.intensity, static_cast<float>(light.far * light.near / span),
-                           glm::vec3(0.0f), static_cast<float>(light.far / span)};
+    constants.points[i] = {light.place(),
+                           static_cast<float>(light.texelWidth(settings.pointSize)),
+                           light.intensity,
+                           static_cast<float>(light.far * light.near / span),
+                           static_cast<float>(light.radius),
+                           0.0f,
+                           0.0f,
+                           static_cast<float>(light.far / span)};
   }
   constants_ = gl::Buffer("lights", sizeof constants, &constants, gl::Usage::staticDraw);
   std::vector<shared::PlainLamp> lamps;
@@ -45,11 +57,13 @@ LocalLights::LocalLights(gl::ProgramLibrary& programs, const GpuScene& scene, co
     plain_ = gl::Buffer("lamps without shadows", lamps.size() * sizeof lamps[0], lamps.data(), gl::Usage::staticDraw);
   const int spotLayers = static_cast<int>(spotViews_.size()), pointLayers = static_cast<int>(pointViews_.size());
   if (spotLayers > 0)
-    spotShadows_.emplace(programs, scene, "spot shadows",
-                         LayeredDepth::Shape{gl::TextureKind::array, settings.spotSize, spotLayers, spotLayers});
+    spotShadows_.emplace(
+        programs, scene, "spot shadows",
+        LayeredDepth::Shape{gl::TextureKind::array, settings.spotSize, spotLayers, spotLayers, true, spotsAreSoft_});
   if (pointLayers > 0)
-    pointShadows_.emplace(programs, scene, "point shadows",
-                          LayeredDepth::Shape{gl::TextureKind::cubeArray, settings.pointSize, pointLayers, 6});
+    pointShadows_.emplace(
+        programs, scene, "point shadows",
+        LayeredDepth::Shape{gl::TextureKind::cubeArray, settings.pointSize, pointLayers, 6, true, pointsAreSoft_});
 }
 
 void LocalLights::bindForShading() const {

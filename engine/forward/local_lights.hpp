@@ -18,6 +18,7 @@ class LocalLights {
     int pointSize = 512;  ///< texels per side of each of the six faces of an omnidirectional light's
     int shadows = 4;  ///< lamps of a kind with a shadow map, at most: those of which surfaces reflect most
                       ///< (rsm/lamp_choice.hpp); 0 to LIGHTS_MAX_SHADOWS
+    bool penumbrae = true;  ///< of lamps that have a size
   };
   static bool isNeeded(const SceneFeatures& features) { return features.spotLights || features.pointLights; }
 
@@ -25,6 +26,9 @@ class LocalLights {
               const std::vector<LightViews>& spots, const std::vector<LightViews>& points,
               const std::vector<LightViews>& plain);
 
+  /// Whether any lamp of a kind that has maps has a size, and so a penumbra: all of its kind are filtered alike.
+  bool areSpotsSoft() const { return spotsAreSoft_; }
+  bool arePointsSoft() const { return pointsAreSoft_; }
   bool hasSpots() const { return spotShadows_.has_value(); }
   bool hasPoints() const { return pointShadows_.has_value(); }
   bool hasPlainLamps() const { return plain_.bytes() > 0; }
@@ -35,6 +39,7 @@ class LocalLights {
   std::size_t gpuBytes() const;
 
  private:
+  bool spotsAreSoft_ = false, pointsAreSoft_ = false;
   std::vector<LayeredDepth::View> spotViews_, pointViews_;
   std::optional<LayeredDepth> spotShadows_;  ///< a layer per spot
   std::optional<LayeredDepth> pointShadows_;  ///< six layers per light, a cube map

@@ -15,7 +15,7 @@ SunShadow::SunShadow(gl::ProgramLibrary& programs, const GpuScene& scene, const 
     return;
   }
   cascades_.emplace(programs, scene, "sun cascades",
-                    LayeredDepth::Shape{gl::TextureKind::array, settings.size, count, count, true});
+                    LayeredDepth::Shape{gl::TextureKind::array, settings.size, count, count, false, true});
   constants_ = gl::Buffer("sun cascades", sizeof(shared::SunCascadeConstants), nullptr, gl::Usage::dynamicDraw);
 }
 

@@ -7,15 +7,24 @@
 #include "forward/shadow_map.hpp"
 #include "forward/sun_cascades.hpp"
 
+#include <array>
 #include <optional>
+#include <string_view>
 
 namespace lucerna {
+
+/// Of shadow maps: a tent of 3x3 texels, or percentage-closer soft shadows of the sun's disc and of lamps' balls
+/// [Fernando2005].
+enum class ShadowFilter { tent, pcss };
+constexpr std::array<std::string_view, 2> namesOf(ShadowFilter) { return {"tent", "pcss"}; }
 
 class SunShadow {
  public:
   struct Settings {
     int size = ShadowMap::Settings{}.size;  ///< texels per side of the map, or of each cascade
     SunCascadeSettings cascades;
+    ShadowFilter filter = ShadowFilter::pcss;  ///< of lamps' maps too
+    int taps = 16;  ///< in a penumbra; half as many look for what casts it
   };
   static bool isNeeded(const SceneFeatures& features) { return ShadowMap::isNeeded(features); }
 

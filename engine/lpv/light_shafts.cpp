@@ -40,6 +40,9 @@ LightShafts::LightShafts(gl::ProgramLibrary& programs, const Haze& haze, const S
     : steps_(settings.steps), chunks_(settings.unmeasuredIterations) {
   gl::ShaderFlags flags{{"SUN", settings.sun},
                         {"SUN_CASCADES", settings.sunCascades},
+                        {"PENUMBRA_TAPS", 0},
+                        {"SOFT_SPOTS", 0},
+                        {"SOFT_POINTS", 0},
                         {"PROPAGATED", settings.volume},
                         {"FULL_FLOAT", settings.fullFloat}};
   if (settings.volume) flags.insert(flags.end(), settings.lookup.begin(), settings.lookup.end());

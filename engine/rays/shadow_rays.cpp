@@ -7,6 +7,8 @@
 #include "scene/motion.hpp"
 #include "shared/bindings.h"
 
+#include <algorithm>
+
 namespace lucerna {
 
 namespace {
@@ -55,10 +57,12 @@ ShadowRays::ShadowRays(gl::ProgramLibrary& programs, const PathScene& scene, con
                                                               {"SHARED_STACK", scene.rays().sharedStack()},
                                                               {"SUN_RAYS", lights.sun.has_value()},
                                                               {"LAMPS", lights.lamps},
-                                                              {"WIDE", lights.lamps >= 31}}))) {}
+                                                              {"WIDE", lights.lamps + (lights.sun ? 1 : 0) > 32}}))) {}
 
 void ShadowRays::resize(glm::ivec2 size) {
-  visible_ = gl::Texture("visible lights", lights_.lamps >= 31 ? gl::Format::rgba32ui : gl::Format::r32ui, size);
+  const int lights = lights_.lamps + (lights_.sun ? 1 : 0), layers = std::max((lights + 127) / 128, 1);
+  visible_ = gl::Texture("visible lights", lights > 32 ? gl::Format::rgba32ui : gl::Format::r32ui,
+                         glm::ivec3(size, layers), {}, 1, gl::TextureKind::array);
 }
 
 void ShadowRays::record(const View& view) {

@@ -34,7 +34,7 @@ class TracedScene {
 
 class ShadowRays {
  public:
-  static constexpr int kMostLights = 128;  ///< the sun among them
+  static constexpr int kMostLights = 1024;  ///< the sun among them
   struct Lights {
     std::optional<DirectionalLight> sun;
     int lamps = 0;  ///< that the storage block PLAIN_LAMPS_BINDING begins with

@@ -21,6 +21,7 @@ void applyFidelity(RenderSettings& settings, Fidelity fidelity) {
                                                         : fidelity != Fidelity::corrected && deviation.inOriginal());
   if (fidelity == Fidelity::corrected) return;
   settings.shadows = ShadowTransport::map;
+  settings.shadow.filter = ShadowFilter::tent;
   for (const TechniqueEntry& technique : allTechniques())
     if (technique.publish) technique.publish(settings);
 }

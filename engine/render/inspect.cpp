@@ -79,7 +79,7 @@ void Renderer::addDirectShares(const InspectedTerms& terms, PixelInspection& ans
   lamps(spots_, INSPECTED_SPOTS);
   lamps(points_, INSPECTED_POINTS);
   if (!plainLamps_.empty())
-    answer.add("direct", fmt::format("{} lamps without shadows", plainLamps_.size()),
+    answer.add("direct", fmt::format("{} lamps without shadow maps", plainLamps_.size()),
                glm::dvec3(terms[INSPECTED_PLAIN_LAMPS]), {position});
 }
 

@@ -134,14 +134,20 @@ void Renderer::chooseLamps(gl::ProgramLibrary& programs) {
   points_ = pointViews(gpuScene_->scene());
   plainLamps_.clear();
   const bool reflectsLamps = technique.readsLightMaps && technique.readsLightMaps(settings_, features_);
-  const bool byRays = settings_.shadows == ShadowTransport::rays;
-  const bool isCrowded = byRays && spots_.size() + points_.size() >= std::size_t{ShadowRays::kMostLights};
-  if (((showsDirect() && !byRays) || reflectsLamps || isCrowded) && LocalLights::isNeeded(features_)) {
-    const auto most = byRays && !reflectsLamps ? std::size_t{ShadowRays::kMostLights / 2 - 1}
-                                               : static_cast<std::size_t>(settings_.lights.shadows);
+  const bool byRays = settings_.shadows == ShadowTransport::rays, hasMaps = showsDirect() && !byRays;
+  const std::size_t mostByRays = ShadowRays::kMostLights - 1;
+  const bool isCrowded = spots_.size() + points_.size() > mostByRays;
+  if ((hasMaps || reflectsLamps || isCrowded) && LocalLights::isNeeded(features_)) {
+    const std::size_t most =
+        hasMaps || reflectsLamps ? static_cast<std::size_t>(settings_.lights.shadows) : mostByRays / 2;
+    const std::string_view lack = reflectsLamps ? "are in no map of light" : "";
     for (std::vector<LightViews>* lamps : {&spots_, &points_})
-      std::ranges::move(keepMostImportant(programs, *gpuScene_, *lamps, most), std::back_inserter(plainLamps_));
+      std::ranges::move(keepMostImportant(programs, *gpuScene_, *lamps, most, lack), std::back_inserter(plainLamps_));
   }
+  const std::size_t byRaysToo = hasMaps ? 0 : spots_.size() + points_.size();
+  if (showsDirect() && plainLamps_.size() + byRaysToo > mostByRays)
+    logWarning("{} lamps: {} of them have shadows by rays, the others shine through what is before them",
+               spots_.size() + points_.size() + plainLamps_.size(), mostByRays);
 }
 
 bool Renderer::follow(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
@@ -228,18 +234,22 @@ const Scene& Renderer::aboutOrigin(const Scene& scene) {
   return moved_ ? *moved_ : moved_.emplace(movedTo(scene, origin_));
 }
 
+// Rays find the shadows of all lights, or only of those lamps that have no maps.
 void Renderer::makeShadowMaps(gl::ProgramLibrary& programs) {
-  if (settings_.shadows == ShadowTransport::rays) {
+  const bool isByRays = settings_.shadows == ShadowTransport::rays;
+  if (isByRays || !plainLamps_.empty()) {
+    ShadowRays::Lights lights{{}, rayShadowedLamps()};
+    if (isByRays && features_.directionalLight) lights.sun = gpuScene_->scene().sun;
+    shadowRays_.emplace(programs, traced_.get(), origin_, lights, settings_.unmeasuredIterations);
+    shadowRays_->resize(settings_.size);
+  }
+  if (isByRays) {
     std::vector<LightViews> lamps = spots_;
     lamps.insert(lamps.end(), points_.begin(), points_.end());
     lamps.insert(lamps.end(), plainLamps_.begin(), plainLamps_.end());
     if (!lamps.empty() && !localLights_)
       localLights_.emplace(programs, *gpuScene_, settings_.lights, std::vector<LightViews>{}, std::vector<LightViews>{},
                            lamps);
-    ShadowRays::Lights lights{{}, rayShadowedLamps()};
-    if (features_.directionalLight) lights.sun = gpuScene_->scene().sun;
-    shadowRays_.emplace(programs, traced_.get(), origin_, lights, settings_.unmeasuredIterations);
-    shadowRays_->resize(settings_.size);
     return;
   }
   if (SunShadow::isNeeded(features_) && !sunShadow_) {
@@ -252,8 +262,36 @@ void Renderer::makeShadowMaps(gl::ProgramLibrary& programs) {
   }
   if (LocalLights::isNeeded(features_) && !localLights_) {
     lampShadowsMade_ = false;
-    localLights_.emplace(programs, *gpuScene_, settings_.lights, spots_, points_, plainLamps_);
+    LocalLights::Settings lamps = settings_.lights;
+    lamps.penumbrae = settings_.shadow.filter == ShadowFilter::pcss;
+    localLights_.emplace(programs, *gpuScene_, lamps, spots_, points_, plainLamps_);
   }
+}
+
+bool Renderer::sunHasPenumbra() const {
+  const std::optional<DirectionalLight>& sun = gpuScene_->scene().sun;
+  return sunShadow_ && settings_.shadow.filter == ShadowFilter::pcss && sun && sun->angularDiameter > 0.0;
+}
+
+gl::ShaderFlags Renderer::shadowFlags() const {
+  const bool hasMaps = settings_.shadows == ShadowTransport::map;
+  const int spots = hasMaps && localLights_ ? static_cast<int>(spots_.size()) : 0,
+            points = hasMaps && localLights_ ? static_cast<int>(points_.size()) : 0;
+  const bool softSpots = spots > 0 && localLights_->areSpotsSoft(),
+             softPoints = points > 0 && localLights_->arePointsSoft(), softSun = sunHasPenumbra();
+  return {{"SUN", hasMaps ? sunShadow_.has_value() : shadowRays_ && features_.directionalLight},
+          {"SUN_BY_RAYS", !hasMaps && shadowRays_ && features_.directionalLight},
+          {"SUN_CASCADES", sunShadow_ ? sunShadow_->cascades() : 0},
+          {"SHADOW_MAPS", hasMaps && (sunShadow_ || spots + points > 0)},
+          {"PENUMBRA_TAPS", softSpots || softPoints || softSun ? settings_.shadow.taps : 0},
+          {"SPOTS", spots},
+          {"POINTS", points},
+          {"SOFT_SPOTS", softSpots ? spots : 0},
+          {"SOFT_POINTS", softPoints ? points : 0},
+          {"RAY_LAMPS", shadowRays_ ? rayShadowedLamps() : 0},
+          {"SPOT_LAMPS", hasMaps ? 0 : static_cast<int>(spots_.size())},
+          {"INSPECTED_LAMPS", hasMaps ? 0 : static_cast<int>(spots_.size() + points_.size())},
+          {"PLAIN_LAMPS", localLights_ && localLights_->hasPlainLamps()}};
 }
 
 SurfacePrograms Renderer::surfacePrograms(gl::ProgramLibrary& programs, bool inspected) const {
@@ -263,17 +301,8 @@ SurfacePrograms Renderer::surfacePrograms(gl::ProgramLibrary& programs, bool ins
   const auto loadSurface = [&](const std::string& name, bool masked) {
     gl::ShaderFlags flags = gpuScene_->materialFlags(masked);
     const bool showsRest = settings_.component != Component::indirect;  // emission belongs to direct light
-    flags.insert(flags.end(), {{"SUN", shadowRays_ ? features_.directionalLight : sunShadow_.has_value()},
-                               {"SUN_CASCADES", sunShadow_ ? sunShadow_->cascades() : 0},
-                               {"SPOTS", localLights_ && !shadowRays_ ? static_cast<int>(spots_.size()) : 0},
-                               {"POINTS", localLights_ && !shadowRays_ ? static_cast<int>(points_.size()) : 0},
-                               {"SHADOW_RAYS", shadowRays_.has_value()},
-                               {"SHADOW_RAY_LAMPS", shadowRays_ ? rayShadowedLamps() : 0},
-                               {"SPOT_LAMPS", static_cast<int>(spots_.size())},
-                               {"INSPECTED_LAMPS", static_cast<int>(spots_.size() + points_.size())},
-                               {"PLAIN_LAMPS", localLights_ && localLights_->hasPlainLamps()},
-                               {"EMISSION", features_.emission && showsRest},
-                               {"INSPECTED", inspected}});
+    flags = gl::with(flags, shadowFlags());
+    flags.insert(flags.end(), {{"EMISSION", features_.emission && showsRest}, {"INSPECTED", inspected}});
     for (const char* flag :
          {"HAZE", "SHOW_REFUSED", "INDIRECT_SPECULAR", "BEHIND_MEDIA"})  // 0 unless the technique sets them
       if (std::none_of(own.begin(), own.end(), [&](const auto& o) { return o.first == flag; }))
@@ -333,7 +362,8 @@ void Renderer::forget() {
 }
 
 int Renderer::rayShadowedLamps() const {
-  const std::size_t lamps = spots_.size() + points_.size() + plainLamps_.size();
+  const bool isByRays = settings_.shadows == ShadowTransport::rays;
+  const std::size_t lamps = plainLamps_.size() + (isByRays ? spots_.size() + points_.size() : 0);
   return static_cast<int>(std::min(lamps, std::size_t{ShadowRays::kMostLights - 1}));
 }
 
@@ -394,6 +424,7 @@ void Renderer::bindFrameConstants(const FrameView& view) {
     frame.sunClipFromWorld = glm::mat4(sunFrustum_.clipFromWorld);
     frame.sunDirection = glm::vec3(scene.sun->direction);
     frame.sunIrradiance = scene.sun->irradiance;
+    if (sunHasPenumbra()) frame.sunTangent = static_cast<float>(std::tan(0.5 * scene.sun->angularDiameter));
     frame.shadowNormalOffset =
         SunShadow::normalOffset(std::max(sunFrustum_.width, sunFrustum_.height) / settings_.shadow.size);
   }
@@ -454,12 +485,13 @@ void Renderer::shade(const FrameView& view, bool depthIsDrawn) {
 }
 
 // Depth is known, so that a pixel shades one surface: its textures, nine texels of the sun's shadow map, four taps of
-// each lamp's, and a lookup of what a technique adds.
+// each lamp's, those of penumbrae, and a lookup of what a technique adds.
 double Renderer::iterationsOfSurface() const {
   constexpr double kIterationsOfMaterial = 4.0, kIterationsOfSun = 9.0, kIterationsOfLamp = 4.0;
   const int suns = sunShadow_ ? std::max(sunShadow_->cascades(), 1) : 0;
   const double lamps = localLights_ ? static_cast<double>(spots_.size() + points_.size() + plainLamps_.size()) : 0.0;
-  return kIterationsOfMaterial + kIterationsOfSun * suns + kIterationsOfLamp * lamps +
+  const double penumbra = settings_.shadow.filter == ShadowFilter::pcss ? 1.5 * settings_.shadow.taps : 0.0;
+  return kIterationsOfMaterial + (kIterationsOfSun + penumbra) * suns + (kIterationsOfLamp + penumbra) * lamps +
          (technique_ ? technique_->iterationsOfPixel() : 0.0);
 }
 

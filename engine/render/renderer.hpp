@@ -133,7 +133,9 @@ class Renderer {
   std::span<const GeometryTechnique::Sides> sides() const;
   void warnOfWhatIsLeftOut(const TechniqueEntry& technique);
   bool showsDirect() const;  ///< direct light of sun or lamps, with shadows
-  int rayShadowedLamps() const;  ///< the first of localLights_'s lamps
+  int rayShadowedLamps() const;  ///< the first of localLights_'s lamps without maps
+  bool sunHasPenumbra() const;  ///< in its shadow map
+  gl::ShaderFlags shadowFlags() const;  ///< how shading finds what is in the way of sun and lamps
 
   RenderSettings settings_;
   std::uint64_t frames_ = 0;

@@ -32,9 +32,16 @@ std::span<const Setting> sharedSettings() {
       {"shadow.split", number(FRAME_FIELD(shadow.cascades.split), 0.0, 1.0), "",
        "how cascades divide the view's depth: 0 uniformly, 1 logarithmically", "[Zhang2006, section 3.2]", rebuild,
        "shadow.transport=map", "", "shadows"},
+      {"shadow.filter", choice(FRAME_FIELD(shadow.filter)), "",
+       "of shadow maps: tent, 3x3 texels; pcss, penumbrae of the sun's disc and of lamps' balls, too, as wide as what "
+       "casts them is far",
+       "[Fernando2005]", rebuild, "shadow.transport=map", "", "shadows"},
+      {"shadow.taps", number(FRAME_FIELD(shadow.taps), 2, 256), "a frame",
+       "lookups in a penumbra; half as many look for what casts it", "[Fernando2005]", rebuild, "shadow.filter=pcss",
+       "", "shadows"},
       {"shadow.lamps", number(FRAME_FIELD(lights.shadows), 0, LIGHTS_MAX_SHADOWS), "of a kind",
-       "spots, and omnidirectional lights, with shadow maps, at most: those that light the scene most; the others are "
-       "not occluded",
+       "spots, and omnidirectional lights, with shadow maps, at most: those that light the scene most; rays find the "
+       "shadows of the others",
        "", rebuild, "", "", "shadows"},
       {"shadow.spot-size", number(FRAME_FIELD(lights.spotSize), 1, 16384), "texels",
        "side of a spot light's shadow map", "", rebuild, "shadow.transport=map", "", "shadows"},

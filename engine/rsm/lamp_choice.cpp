@@ -11,7 +11,7 @@
 namespace lucerna {
 
 std::vector<LightViews> keepMostImportant(gl::ProgramLibrary& programs, const GpuScene& scene,
-                                          std::vector<LightViews>& views, std::size_t most) {
+                                          std::vector<LightViews>& views, std::size_t most, std::string_view lack) {
   if (views.size() <= most) return {};
   const bool points = views.front().omnidirectional();
   ReflectiveShadowMap::Settings settings;
@@ -30,7 +30,6 @@ std::vector<LightViews> keepMostImportant(gl::ProgramLibrary& programs, const Gp
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return reflected[a] > reflected[b]; });
   std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(most));
-  std::sort(order.begin() + static_cast<std::ptrdiff_t>(most), order.end());
   const double all = std::accumulate(reflected.begin(), reflected.end(), 0.0);
   std::vector<LightViews> kept, others;
   std::string names;
@@ -48,12 +47,11 @@ std::vector<LightViews> keepMostImportant(gl::ProgramLibrary& programs, const Gp
     else if (others.size() == kMostNames + 1) names += ", ...";
     lost += reflected[order[k]];
   }
-  if (!others.empty())
+  if (!others.empty() && !lack.empty())
     logWarning(
-        "{} {} lights: the {} that light the scene most have shadows and are in maps of light; others, with {:.2g} % "
-        "of "
-        "it, shine through what is before them: {} (shadow.lamps; the path tracer and radiosity have all)",
-        views.size(), points ? "omnidirectional" : "spot", most, 100.0 * lost / all, names);
+        "{} {} lights: {} that light the scene most have all; others, with {:.2g} % of it, {}: {} (shadow.lamps; the "
+        "path tracer and radiosity have all)",
+        views.size(), points ? "omnidirectional" : "spot", most, 100.0 * lost / all, lack, names);
   views = std::move(kept);
   return others;
 }

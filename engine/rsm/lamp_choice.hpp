@@ -6,13 +6,15 @@
 
 #include "rsm/reflective_shadow_map.hpp"
 
+#include <string_view>
 #include <vector>
 
 namespace lucerna {
 
 /// Keeps the `most` lamps of `views` (all of one kind) that light the scene most, in their order, and returns the
-/// others. One warning names their share of the light. Draws nothing if there are no more than that.
+/// others, the most important first. Draws nothing if there are no more than that. `lack`: what the others lack, for a
+/// warning that names their share of the light; empty: nothing.
 std::vector<LightViews> keepMostImportant(gl::ProgramLibrary& programs, const GpuScene& scene,
-                                          std::vector<LightViews>& views, std::size_t most);
+                                          std::vector<LightViews>& views, std::size_t most, std::string_view lack);
 
 }  // namespace lucerna

@@ -25,9 +25,13 @@ in vec2 vTexCoord;
 in float vTangentPlane;
 layout(location = 0) out vec4 radiance;
 
-#if SHADOW_RAYS
+#if RAY_LAMPS || SUN_BY_RAYS
 #include "forward/ray_shadows.glsl"
-#elif SUN
+#endif
+#if (SUN && !SUN_BY_RAYS) || SOFT_SPOTS || SOFT_POINTS
+#include "forward/shadow_filter.glsl"
+#endif
+#if SUN && !SUN_BY_RAYS
 #include "forward/sun_shadow.glsl"
 #endif
 #if SPOTS || POINTS || PLAIN_LAMPS
@@ -91,7 +95,7 @@ void main() {
 #if EMISSION
   vec3 emitted = materialEmitted(vTexCoord);
 #endif
-#if SUN
+#if SHADOW_MAPS
   vec3 face = cross(normalize(dFdx(vPosition)), normalize(dFdy(vPosition)));  // the triangle's own normal
 #endif
   bool isCutOut = materialCutOut(vTexCoord);  // discarded last: lights take derivatives
@@ -103,8 +107,9 @@ void main() {
   // normal towards the viewer.
   vec3 meshNormal = normalize(gl_FrontFacing ? vNormal : -vNormal);
   vec3 normal = meshNormal;
-#if (SUN && !SHADOW_RAYS) || SPOTS || POINTS
+#if SHADOW_MAPS
   vec3 lifted = vPosition + bulgeHeight() * meshNormal;  // where shadows are looked up
+  face = dot(face, face) > 1e-12 ? normalize(dot(face, toCamera) > 0.0 ? face : -face) : meshNormal;
 #endif
 #if NORMAL_MAPS
   normal = normalize(gl_FrontFacing ? mapped : -mapped);
@@ -115,13 +120,12 @@ void main() {
 #if SUN
   float cosine = dot(normal, -frame.sunDirection);
   if (cosine > 0.0) {
-    face = dot(face, face) > 1e-12 ? normalize(dot(face, toCamera) > 0.0 ? face : -face) : meshNormal;
-#if SHADOW_RAYS
+#if SUN_BY_RAYS
     float visible = lightVisibility(0);
 #else
     // A face turned away from the sun that is lit since it bulges has no plane in the sun's map.
-    if (lifted != vPosition && dot(face, frame.sunDirection) >= 0.0) face = meshNormal;
-    float visible = sunVisibility(lifted, face);
+    bool isTurnedAway = lifted != vPosition && dot(face, frame.sunDirection) >= 0.0;
+    float visible = sunVisibility(lifted, isTurnedAway ? meshNormal : face);
 #endif
     vec3 irradiance = frame.sunIrradiance * (cosine * visible);
 #if HAZE
@@ -132,14 +136,14 @@ void main() {
 #endif
 #if SPOTS
   for (int i = 0; i < SPOTS; ++i) {
-    Arriving light = spotLight(i, vPosition, normal, lifted, meshNormal);
+    Arriving light = spotLight(i, vPosition, normal, lifted, SOFT_SPOTS > 0 ? face : meshNormal);
     if (light.cosine > 0.0)
       add(result, reflection(albedo, normal, toCamera, light.toLight) * light.irradiance, INSPECTED_SPOTS + i);
   }
 #endif
 #if POINTS
   for (int i = 0; i < POINTS; ++i) {
-    Arriving light = pointLight(i, vPosition, normal, lifted, meshNormal);
+    Arriving light = pointLight(i, vPosition, normal, lifted, SOFT_POINTS > 0 ? face : meshNormal);
     if (light.cosine > 0.0)
       add(result, reflection(albedo, normal, toCamera, light.toLight) * light.irradiance, INSPECTED_POINTS + i);
   }
@@ -150,8 +154,8 @@ void main() {
     Arriving light = plainLamp(i, vPosition, normal);
     if (!(light.cosine > 0.0)) continue;
     vec3 reflected = reflection(albedo, normal, toCamera, light.toLight) * light.irradiance;
-#if SHADOW_RAYS
-    if (i < SHADOW_RAY_LAMPS) reflected *= lightVisibility(SUN + i);
+#if RAY_LAMPS
+    if (i < RAY_LAMPS) reflected *= lightVisibility(SUN_BY_RAYS + i);
 #if INSPECTED
     if (i < INSPECTED_LAMPS) {
       record(i < SPOT_LAMPS ? INSPECTED_SPOTS + i : INSPECTED_POINTS + i - SPOT_LAMPS, vec4(reflected, 0.0));

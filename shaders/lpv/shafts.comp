@@ -14,6 +14,7 @@
 #include "lpv/radiance.glsl"
 #endif
 #if SUN
+#include "forward/shadow_filter.glsl"
 #include "forward/sun_shadow.glsl"
 #endif
 layout(local_size_x = 8, local_size_y = 8) in;

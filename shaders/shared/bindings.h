@@ -16,7 +16,7 @@
 #define UNIT_DIFFUSE 0
 #define UNIT_MASK 1
 #define UNIT_SUN_SHADOW 2
-#define UNIT_VISIBLE_LIGHTS 2  // by rays, instead of maps
+#define UNIT_VISIBLE_LIGHTS 15  // by rays
 #define UNIT_LPV_RED 4
 #define UNIT_LPV_GREEN 5
 #define UNIT_LPV_BLUE 6

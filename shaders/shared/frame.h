@@ -16,7 +16,7 @@ struct FrameConstants {
   vec3 background;         // radiance where there is no surface
   int pixelSamples;        // that a picture has
   vec3 orthographicAxis;   // unit, along an orthographic view; 0: the view is perspective
-  float padding2;
+  float sunTangent;        // of half the angle of the sun's disc; 0 where its shadows have no penumbra
 };
 
 SHARED_END

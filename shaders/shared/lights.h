@@ -16,6 +16,8 @@ struct SpotLightConstants {
   float cosOuter;      // of the half angle at which the intensity has fallen to zero
   vec3 intensity;      // W/sr on the axis
   float shadowTexel;   // width of a texel of the shadow map at depth 1 (scene units per scene unit)
+  vec3 padding;
+  float radius;        // of its ball; 0 where its shadow has no penumbra
 };
 
 struct PointLightConstants {
@@ -23,7 +25,8 @@ struct PointLightConstants {
   float shadowTexel;   // width of a texel of the shadow map at depth 1 along the face's axis
   vec3 intensity;      // W/sr
   float depthScale;    // shadow map depth of a point at distance m along its face's axis: depthOffset - depthScale / m
-  vec3 padding;
+  float radius;        // of its ball; 0 where its shadow has no penumbra
+  float padding0, padding1;
   float depthOffset;
 };
 

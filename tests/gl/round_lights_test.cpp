@@ -21,12 +21,12 @@ constexpr double kFloorLength = 4.0;  ///< of the picture along x, scene units
 
 /// A white floor of y = 0, seen from below the blocker, which covers x < 0 at y = 2.
 struct HalfCoveredFloor : Scene {
-  explicit HalfCoveredFloor(bool blocked) {
+  explicit HalfCoveredFloor(bool blocked, double height = 2.0) {
     materials.resize(1);
     materials[0].diffuse = glm::vec3(1.0f);
     meshes.resize(1);
     add(0.0, -50.0, 50.0);
-    if (blocked) add(2.0, -50.0, 0.0);
+    if (blocked) add(height, -50.0, 0.0);
     meshes[0].indexCount = static_cast<std::uint32_t>(indices.size());
     meshes[0].bounds = bounds;
     Camera camera;
@@ -61,8 +61,11 @@ class RoundLights : public test::GlTest {
     tracer.record(samples);
     return tracer.mean();
   }
-  Image drawn(const Scene& scene, ShadowTransport shadows, int samples, std::string_view technique = "direct") {
+  Image drawn(const Scene& scene, ShadowTransport shadows, int samples, std::string_view technique = "direct",
+              ShadowFilter filter = ShadowFilter::pcss) {
     RenderSettings settings;
+    settings.shadow.filter = filter;
+    settings.shadow.size = 4096;
     settings.technique = technique;
     settings.component = Component::direct;
     settings.of<RadiosityView::Settings>().direct = RadiosityView::Direct::pixels;
@@ -97,6 +100,113 @@ TEST_F(RoundLights, ThePenumbraOfASunIsTheShareOfItsDisc) {
       EXPECT_LT(worst, 0.03) << degrees << isTraced;
     }
   }
+}
+
+// By maps: the share of taps within the disc that the blocker's depth gives, against the disc's.
+TEST_F(RoundLights, PenumbraeOfMapsAreAsWideAsTheBlockerIsFar) {
+  for (const double height : {2.0, 0.9, 0.02}) {
+    HalfCoveredFloor scene(true, height);
+    scene.cameras.front().position.y = std::min(1.0, 0.5 * height);
+    scene.sun = DirectionalLight{{0.0, -1.0, 0.0}, glm::vec3(static_cast<float>(kPi)), 20.0 * kDegree};
+    const double radius = height * std::tan(10.0 * kDegree), texel = 0.025;
+    for (const int samples : {1, 64}) {
+      const Image image = drawn(scene, ShadowTransport::map, samples);
+      double worst = 0.0, mean = 0.0;
+      for (int x = 0; x < kFloorPixels; ++x) {
+        const double place = placeOf(x), value = static_cast<double>(image.at(x, 0).x);
+        worst = std::max(worst, std::abs(value - shareOfDisc(place / radius)));
+        mean += (value - shareOfDisc(place / radius)) / kFloorPixels;
+        const bool isOutside = std::abs(place) > radius + 2.0 * texel;
+        EXPECT_TRUE(!isOutside || value == (place > 0.0 ? 1.0 : 0.0)) << height << " " << x << " " << value;
+      }
+      std::printf("blocker %g above, %d samples: at most %.4f off, %+.4f on average\n", height, samples, worst, mean);
+      EXPECT_LT(worst, samples == 1 ? 0.20 : 0.03) << height;
+      EXPECT_LT(std::abs(mean), samples == 1 ? 0.02 : 0.005) << height;
+    }
+  }
+}
+
+TEST_F(RoundLights, PenumbraeOfASlantingSunInAMapAreThoseOfPaths) {
+  HalfCoveredFloor scene(true);
+  scene.cameras.front().position.x = 1.6;
+  scene.sun =
+      DirectionalLight{glm::normalize(glm::dvec3(0.8, -1.0, 0.3)), glm::vec3(static_cast<float>(kPi)), 10.0 * kDegree};
+  const Image map = drawn(scene, ShadowTransport::map, 64), paths = traced(scene);
+  for (int x = 0; x < kFloorPixels; ++x) EXPECT_NEAR(map.at(x, 0).x, paths.at(x, 0).x, 0.04) << x;
+}
+
+// A second blocker near the floor: it does not narrow the first one's penumbra beside it, and below it, there is no
+// light, though the first one's penumbra is partly lit.
+TEST_F(RoundLights, PenumbraeOfMapsTellNearBlockersFromFarOnes) {
+  HalfCoveredFloor scene(true);
+  scene.add(0.3, 0.45, 1.0);
+  scene.add(0.02, 0.1, 0.2);
+  scene.meshes[0].indexCount = static_cast<std::uint32_t>(scene.indices.size());
+  scene.sun = DirectionalLight{{0.0, -1.0, 0.0}, glm::vec3(static_cast<float>(kPi)), 20.0 * kDegree};
+  scene.cameras.front().position.y = 0.01;
+  const Image image = drawn(scene, ShadowTransport::map, 64);
+  for (int x = 0; x < kFloorPixels; ++x) {
+    const double place = placeOf(x), share = shareOfDisc(place / (2.0 * std::tan(10.0 * kDegree)));
+    const bool isBelow = place > 0.13 && place < 0.17;
+    if (place < 0.07 || isBelow || (place > 0.23 && place < 0.38)) {
+      EXPECT_NEAR(image.at(x, 0).x, isBelow ? 0.0 : share, isBelow ? 0.0 : 0.06) << place;
+    }
+  }
+}
+
+TEST_F(RoundLights, PenumbraeOfLampsInMapsAreThoseOfTheirBalls) {
+  HalfCoveredFloor scene(true);
+  for (const bool isSpot : {false, true}) {
+    // Below the lamp, half-way to the corner of its view, and at the edge of a cube map's face.
+    for (const glm::dvec2& aside : {glm::dvec2(0.0, 0.0), glm::dvec2(1.9, 1.9), glm::dvec2(2.0, 0.0)}) {
+      scene.points.clear();
+      scene.spots.clear();
+      const glm::dvec3 place(-aside.x, 4.0, aside.y);
+      scene.cameras.front().position.x = aside.x;
+      if (isSpot) scene.spots = {SpotLight{place, {0, -1, 0}, glm::vec3(16.0f), 1.2, 1.39, 0.5}};
+      else scene.points = {PointLight{place, glm::vec3(16.0f), 0.5}};
+      const Image maps = drawn(scene, ShadowTransport::map, 64), paths = traced(scene),
+                  tent = drawn(scene, ShadowTransport::map, 64, "direct", ShadowFilter::tent);
+      double worst = 0.0, ofTent = 0.0, largest = 0.0;
+      for (int x = 0; x < kFloorPixels; ++x) {
+        largest = std::max(largest, static_cast<double>(paths.at(x, 0).x));
+        worst = std::max(worst, static_cast<double>(std::abs(maps.at(x, 0).x - paths.at(x, 0).x)));
+        ofTent = std::max(ofTent, static_cast<double>(std::abs(tent.at(x, 0).x - paths.at(x, 0).x)));
+      }
+      std::printf("%s, %g aside: at most %.4f of the light off, without penumbrae %.4f\n", isSpot ? "spot" : "lamp",
+                  aside.x, worst / largest, ofTent / largest);
+      // On a slanting plane the blockers found are not all as far as the edge.
+      EXPECT_LT(worst, (aside.x > 0.0 ? 0.085 : 0.01) * largest) << isSpot << aside.x;
+      EXPECT_GT(ofTent, 0.2 * largest) << isSpot << aside.x;
+    }
+  }
+}
+
+// A floor that nothing covers is lit, however low the sun; a fifth of a texel below what covers it, it is dark.
+TEST_F(RoundLights, PenumbraeOfMapsLeaveNoAcneAndNoLightAtAContact) {
+  for (const double slope : {1.0, 0.1, 0.03}) {
+    HalfCoveredFloor open(false), covered(true, 0.005);
+    covered.cameras.front().position.y = 0.002;
+    open.sun = covered.sun =
+        DirectionalLight{glm::normalize(glm::dvec3(0.3, -slope, 1.0)), glm::vec3(1.0f), 0.53 * kDegree};
+    const Image lit = drawn(open, ShadowTransport::map, 4), dark = drawn(covered, ShadowTransport::map, 4);
+    const double right = -open.sun->direction.y / kPi;
+    for (int x = 0; x < kFloorPixels; ++x) {
+      EXPECT_NEAR(lit.at(x, 0).x, right, 1e-4 * right) << slope << " " << x;
+      EXPECT_TRUE(placeOf(x) > -0.1 || dark.at(x, 0).x == 0.0f) << slope << " " << x << " " << dark.at(x, 0).x;
+    }
+  }
+}
+
+// What lights without a size leave out: the lookups of penumbrae.
+TEST_F(RoundLights, LightsWithoutASizeAreFilteredByTheTentAlone) {
+  HalfCoveredFloor scene(true);
+  scene.sun = DirectionalLight{glm::normalize(glm::dvec3(0.1, -1.0, 0.0)), glm::vec3(1.0f)};
+  scene.spots = {SpotLight{{0.5, 3.0, 0.2}, {0, -1, 0}, glm::vec3(3.0f, 1.0f, 1.0f), 0.9, 1.2}};
+  scene.points = {PointLight{{-0.4, 1.2, 0.3}, glm::vec3(0.0f, 0.0f, 1.0f)}};
+  const Image pcss = drawn(scene, ShadowTransport::map, 4),
+              tent = drawn(scene, ShadowTransport::map, 4, "direct", ShadowFilter::tent);
+  EXPECT_TRUE(pcss.pixels == tent.pixels);
 }
 
 TEST_F(RoundLights, RadiositysPicturesHavePenumbraeOfSunsAndLamps) {
@@ -170,15 +280,41 @@ TEST_F(RoundLights, LightsWithoutASizeHaveTheShadowsOfMaps) {
   }
 }
 
-TEST_F(RoundLights, ManyLampsHaveShadows) {
+// With maps, all but four by rays; of more than 128 lamps, bits in a second layer.
+TEST_F(RoundLights, AllOfManyLampsHaveShadows) {
   HalfCoveredFloor scene(true);
-  for (int i = 0; i < 140; ++i) scene.points.push_back({{-0.3 - 0.001 * i, 3.0, 0.0}, glm::vec3(1.0f)});
-  const Image rays = drawn(scene, ShadowTransport::rays, 1), paths = traced(scene, 2048);
-  // 63 of 140 have shadows; the others shine through.
-  const double lit = paths.at(kFloorPixels - 1, 0).x, through = rays.at(0, 0).x / rays.at(kFloorPixels - 1, 0).x;
-  EXPECT_NEAR(rays.at(kFloorPixels - 1, 0).x / lit, 1.0, 0.03);
-  EXPECT_EQ(paths.at(0, 0).x, 0.0f);
-  EXPECT_LT(through, 0.75);
+  for (int i = 0; i < 140; ++i)  // the last twelve are below what covers the floor
+    scene.points.push_back({{-0.3 - 0.001 * i, i < 128 ? 3.0 : 1.5, 0.0}, glm::vec3(1.0f)});
+  for (int i = 0; i < 3; ++i)
+    scene.spots.push_back({{-0.3 - 0.001 * i, 3.0, 0.0}, {0.0, -1.0, 0.0}, glm::vec3(1.0f), 1.1, 1.2});
+  const Image paths = traced(scene, 2048);
+  for (const ShadowTransport transport : {ShadowTransport::map, ShadowTransport::rays}) {
+    const Image image = drawn(scene, transport, 1);
+    for (const int x : {0, kFloorPixels - 1}) EXPECT_NEAR(image.at(x, 0).x / paths.at(x, 0).x, 1.0, 0.04) << x;
+  }
+}
+
+// Of more lamps than have maps, one is carried from where it lights the floor to above what covers it.
+TEST_F(RoundLights, ACarriedLampHasItsShadow) {
+  HalfCoveredFloor scene(true);
+  for (int i = 0; i < 6; ++i) scene.points.push_back({{-1.0, 3.0 + 0.1 * i, 0.0}, glm::vec3(1.0f)});
+  for (std::size_t carried = 0; carried < scene.points.size(); ++carried) {
+    HalfCoveredFloor moving = scene;
+    moving.points[carried].position = {-1.0, 1.5, 0.3};
+    RenderSettings settings;
+    settings.technique = "direct";
+    settings.size = {kFloorPixels, kFloorRows};
+    settings.fullFloatTarget = true;
+    Renderer renderer(context(), programs(), moving, settings);
+    renderer.render(moving.cameras.front());
+    EXPECT_GT(renderer.readRadiance().at(8, 0).x, 0.1f) << carried;
+    moving.points[carried] = scene.points[carried];
+    SceneChange change;
+    change.lamps = true;
+    ASSERT_TRUE(renderer.follow(context(), programs(), moving, change));
+    renderer.render(moving.cameras.front());
+    EXPECT_EQ(renderer.readRadiance().at(8, 0).x, 0.0f) << carried;
+  }
 }
 
 }  // namespace

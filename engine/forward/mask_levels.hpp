@@ -1,0 +1,19 @@
+// Smaller versions of a mask that keep its coverage (no GL, pure): a cut at 1/2 keeps the share of the area that it has
+// in the picture itself, so that foliage and chains do not thin out at a distance [Castano2010].
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace lucerna {
+
+/// The share of a repeated picture's area where its bilinear interpolation is at least 1/2.
+double maskCoverage(const std::vector<std::uint8_t>& texels, glm::ivec2 size);
+
+/// Levels 1 and up, each of half the size, down to one texel: the means of the texels that each covers, scaled to the
+/// coverage of the picture.
+std::vector<std::vector<std::uint8_t>> maskLevels(const std::vector<std::uint8_t>& texels, glm::ivec2 size);
+
+}  // namespace lucerna
