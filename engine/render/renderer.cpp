@@ -196,6 +196,14 @@ void Renderer::warnOfWhatIsLeftOut(const TechniqueEntry& technique) {
     warn(fmt::format("what surfaces reflect or let through is left out{}: {} ({} draw it)",
                      geometry_ ? ", they look matt" : ", but lamps' highlights", fmt::join(reflecting, ", "),
                      techniquesThat([](const TechniqueEntry& t) { return t.drawsReflections; })));
+  // Reflected rays find surfaces behind glass, but not what passes it from a point, a spot or the sun.
+  const std::vector<std::string> casters = namesOfDrawn(gpuScene_->scene(), [](const Material& material) {
+    return material.bsdf == Bsdf::dielectric || material.bsdf == Bsdf::mirror;
+  });
+  if (reflects && features_.anyLight() && !casters.empty())
+    warn(fmt::format("sun and lamps shine neither through glass and water nor by way of mirrors (caustics): {} ({} "
+                     "draws that light)",
+                     fmt::join(casters, ", "), draws));
   const std::vector<std::string> bodies = namesOfDrawn(gpuScene_->scene(), [](const Material& material) {
     return material.bsdf == Bsdf::dielectric && material.interior >= 0;
   });
