@@ -16,10 +16,17 @@ namespace {
 
 /// What touches, and the least length of a contact: a fraction of the scene's largest extent.
 constexpr double kTouch = 1e-4;
+/// Smaller triangles neither are cut nor cut others, and shorter contacts cut nothing: fractions of the patches'
+/// longest edge. The atrium's 128,262 patches become 158,165; 817,171 if all are cut.
+constexpr double kLeastTriangle = 0.5, kLeastContact = 0.1;
 
 using Corners = std::array<glm::dvec3, 3>;
 
 glm::dvec3 normalOf(const Corners& c) { return glm::normalize(glm::cross(c[1] - c[0], c[2] - c[0])); }
+
+double longestEdgeOf(const Corners& c) {
+  return std::max({glm::distance(c[0], c[1]), glm::distance(c[1], c[2]), glm::distance(c[2], c[0])});
+}
 
 struct Box {
   glm::dvec3 min{1e300}, max{-1e300};
@@ -93,6 +100,8 @@ class BoxTree {
 /// A line in a triangle's plane along which another triangle stands on it.
 struct Contact {
   glm::dvec3 begin, end;
+  double size;  ///< longest edge of the other
+  double length;  ///< beyond this triangle too
   std::vector<glm::dvec3> standing;  ///< unit directions, across the line, in which the other goes on
 };
 
@@ -129,7 +138,7 @@ std::optional<Contact> contactOf(const Corners& a, const Corners& b, double touc
   for (glm::dvec3& end : ends) end -= glm::dot(normal, end - a[0]) * normal;
   const auto line = within(a, normal, ends[0], ends[1], touch, touch);
   if (!line) return std::nullopt;
-  Contact contact{(*line)[0], (*line)[1], {}};
+  Contact contact{(*line)[0], (*line)[1], longestEdgeOf(b), glm::distance(ends[0], ends[1]), {}};
   const glm::dvec3 along = glm::normalize(contact.end - contact.begin);
   for (std::size_t k = 0; k < 3; ++k) {
     if (height[k] == 0.0) continue;
@@ -178,6 +187,24 @@ class Cutter {
         std::vector<glm::dvec3>& directions = mesh_.standing[at];
         directions.insert(directions.end(), contact.standing.begin(), contact.standing.end());
       }
+  }
+
+  /// Forgets what stands between no two patches.
+  void tidy() {
+    std::erase_if(mesh_.standing, [&](const auto& entry) {
+      const auto& [edge, directions] = entry;
+      const std::set<std::uint32_t>& on = onEdge_.at(edge);
+      for (const std::uint32_t a : on)
+        for (const std::uint32_t b : on) {
+          Patch backA = mesh_.patches[a], backB = mesh_.patches[b];
+          backA.faceNormal = -backA.faceNormal;
+          backB.faceNormal = -backB.faceNormal;
+          if (a < b &&
+              (isBetween(directions, mesh_.patches[a], mesh_.patches[b]) || isBetween(directions, backA, backB)))
+            return false;
+        }
+      return true;
+    });
   }
 
   std::vector<std::uint32_t> changed() const { return {changed_.begin(), changed_.end()}; }
@@ -289,14 +316,26 @@ std::vector<std::vector<Contact>> contactsOf(const RadiosityMesh& mesh, double t
 
 }  // namespace
 
-std::vector<std::uint32_t> cutAtContacts(RadiosityMesh& mesh) {
-  const double touch = kTouch * mesh.extent;
+bool isBetween(std::span<const glm::dvec3> standing, const Patch& a, const Patch& b) {
+  constexpr double kRises = 0.15;  // sine to both; less is a neighbour in a curved sheet
+  return std::ranges::any_of(standing, [&](const glm::dvec3& direction) {
+    return glm::dot(direction, a.faceNormal) > kRises && glm::dot(direction, b.faceNormal) > kRises;
+  });
+}
+
+std::vector<std::uint32_t> cutAtContacts(RadiosityMesh& mesh, double longestEdge) {
+  const double touch = kTouch * mesh.extent, least = kLeastTriangle * longestEdge;
   const std::vector<std::vector<Contact>> contacts = contactsOf(mesh, touch);
+  std::vector<bool> isLarge;
+  for (const Patch& patch : mesh.patches) isLarge.push_back(longestEdgeOf(mesh.corners(patch)) > least);
   Cutter cutter(mesh, touch);
   for (std::uint32_t whole = 0; whole < contacts.size(); ++whole)
-    for (const Contact& contact : contacts[whole]) cutter.cut(whole, contact);
+    for (const Contact& contact : contacts[whole])
+      if (isLarge[whole] && contact.size > least && contact.length > kLeastContact * longestEdge)
+        cutter.cut(whole, contact);
   for (std::uint32_t whole = 0; whole < contacts.size(); ++whole)
     for (const Contact& contact : contacts[whole]) cutter.stand(whole, contact);
+  cutter.tidy();
   return cutter.changed();
 }
 

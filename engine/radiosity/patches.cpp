@@ -135,19 +135,11 @@ class LightFan {
     if (p.material != q.material || static_cast<double>(glm::dot(normal(p, a), normal(q, b))) < crease) return false;
     const std::uint32_t point = p.point[static_cast<std::size_t>(a.corner)];
     return std::ranges::any_of(p.point, [&](std::uint32_t other) {
-      return other != point && std::ranges::find(q.point, other) != q.point.end() &&
-             !isBetween(edgeOf(point, other), p, q);
+      if (other == point || std::ranges::find(q.point, other) == q.point.end()) return false;
+      const auto standing = mesh_.standing.find(edgeOf(point, other));
+      return standing == mesh_.standing.end() || !isBetween(standing->second, p, q);
     });
   }
-  /// Whether something stands on an edge in front of both patches.
-  bool isBetween(const MeshEdge& edge, const Patch& p, const Patch& q) const {
-    constexpr double kRises = 0.15;  // sine to both; less is a neighbour in a curved sheet
-    const auto found = mesh_.standing.find(edge);
-    return found != mesh_.standing.end() && std::ranges::any_of(found->second, [&](const glm::dvec3& direction) {
-             return glm::dot(direction, p.faceNormal) > kRises && glm::dot(direction, q.faceNormal) > kRises;
-           });
-  }
-
   const RadiosityMesh& mesh_;
   std::vector<std::size_t> first_;
 };
@@ -351,7 +343,8 @@ RadiosityMesh makePatches(const Scene& scene, const PatchSettings& settings) {
     throwBadInput("{}: no triangle with an area ({} without, {} with corners that are not finite)", scene.name,
                   mesh.degenerate, mesh.notFinite);
   if (settings.contacts)
-    for (const std::uint32_t changed : cutAtContacts(mesh)) complete(mesh.patches[changed], mesh, scene);
+    for (const std::uint32_t changed : cutAtContacts(mesh, settings.longestEdge))
+      complete(mesh.patches[changed], mesh, scene);
   // Cut until no edge is too long.
   numberLightVertices(mesh, settings);
   if (settings.longestEdge > 0.0) {

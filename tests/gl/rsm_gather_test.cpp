@@ -87,11 +87,13 @@ TEST_F(RsmGatherOnGl, EqualsTheReference) {
         settings.nearField = onGl;
         settings.weight = weight;
         settings.radius = 0.45f;
+        settings.reach = rotation > 0.0f ? RsmGather::Reach::map : RsmGather::Reach::radius;
         settings.clampTexels = 2.0f;
-        const auto pattern = RsmGather::pattern(400, weight, {0.3, 0.1});
+        const auto pattern = RsmGather::pattern(400, weight, {0.3, 0.1}, settings.exponent());
         const auto actual = probe(map, settings, pattern, points, rotation);
-        const reference::GatherOptions options{static_cast<double>(settings.radius), onCpu,
-                                               2.0 * std::sqrt(map.texelArea())};
+        const reference::GatherOptions options{static_cast<double>(settings.farthest()), onCpu,
+                                               2.0 * std::sqrt(map.texelArea()),
+                                               settings.reach == RsmGather::Reach::map};
         int compared = 0;
         double worst = 0.0;
         for (std::size_t i = 0; i < points.size(); ++i) {
@@ -239,7 +241,6 @@ class RsmRendered : public test::SharedProgramsTest {
 TEST_F(RsmRendered, TheWallOfACornerHasTheExactIrradiance) {
   const Scene scene = corner();
   RenderSettings s = settings();
-  s.of<RsmGather::Settings>().radius = 2.0f;
   s.of<RsmGather::Settings>().samples = 16384;
   s.of<RsmGather::Settings>().interpolate = false;
   s.size = {8, 120};

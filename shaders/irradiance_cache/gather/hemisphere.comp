@@ -72,18 +72,21 @@ uint pointOf(int face, ivec3 cell, vec3 position, vec3 normal) {
   return nearest;
 }
 
-// Whether nothing stands between a surface and a point in its plane, such as the wall between two rooms with one floor.
-// The ray runs above both, so that a curved surface does not count as such.
-bool isBeside(Surface at, uint triangle, uint point) {
-  const float kAbove = 0.1;  // cells
-  vec3 lift = kAbove * bounceCell * at.normal, from = at.position + lift,
-       to = texelFetch(bouncePlaces, int(point) - 1).xyz + lift;
-  return !anyHit(Ray(from, 0.0, to - from, 1.0), triangle);
+// Whether nothing stands between a surface and a point in its plane, such as the wall between two rooms with one floor:
+// straight along the surface or, where that is curved, above it.
+bool isBeside(Surface at, uint point) {
+  const float kClear = 0.001, kAbove = 0.1;  // cells
+  vec3 from = offsetRay(at.position, at.geometricNormal, at.magnitude),
+       to = texelFetch(bouncePlaces, int(point) - 1).xyz + kClear * bounceCell * at.normal,
+       lift = kAbove * bounceCell * at.normal;
+  if (!anyHit(Ray(from, 0.0, to - from, 1.0), kNoHit)) return true;
+  return !anyHit(Ray(from, 0.0, lift, 1.0), kNoHit) && !anyHit(Ray(to, 0.0, lift, 1.0), kNoHit) &&
+         !anyHit(Ray(from + lift, 0.0, to - from, 1.0), kNoHit);
 }
 
 // A point near a surface's, drawn as often as a trilinear lookup among those of the faces that the normal leans to
 // would weigh it; of these, the first that nothing stands before. 0: none.
-uint pointNear(Surface at, uint triangle, vec4 xi) {
+uint pointNear(Surface at, vec4 xi) {
   const int kPlaces = 9;
   vec3 normal = at.normal, lean = normal * normal, inCells = (at.position - bounceMinimum) / bounceCell;
   ivec3 own = clampedInt(floor(inCells), ivec3(-2), bounceCells + 1);  // more than a cell outside remains outside
@@ -99,10 +102,10 @@ uint pointNear(Surface at, uint triangle, vec4 xi) {
     int axis = i < 2 ? drawn : most;
     uint point = pointOf(faceOf(axis, normal[axis]), cell, at.position, normal);
     if (point == 0u || point == first) continue;
-    if (isBeside(at, triangle, point)) return point;
+    if (isBeside(at, point)) return point;
     if (first == 0u) first = point;
   }
-  return first;
+  return 0u;
 }
 #endif
 
@@ -164,7 +167,7 @@ vec3 lookAround(CacheRecord record, uint index, uint ray) {
   sum += kPi * emissionNear(at, hit, dot(direction, surface.normal), direction);
 #endif
 #if BOUNCED
-  uint point = pointNear(at, hit.triangle, vec4(unitFloat(randomWords(numbers, 1u, kPurposePick).xy),
+  uint point = pointNear(at, vec4(unitFloat(randomWords(numbers, 1u, kPurposePick).xy),
                                                 unitFloat(randomWords(numbers, 1u, kPurposeChoice).xy)));
   vec3 albedo = min(wholeAlbedoAt(at), vec3(1.0));
 #if LINKS
