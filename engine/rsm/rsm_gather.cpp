@@ -83,7 +83,8 @@ RsmGather::RsmGather(gl::ProgramLibrary& programs, const std::array<bool, 3>& li
             : &programs.loadCompute(fmt::format("rsm gather{} all", name), "rsm/gather_all.comp", flagsOfLight);
   }
   if (settings.interpolates()) interpolate_ = &programs.loadCompute("rsm interpolate", "rsm/interpolate.comp");
-  const std::vector<glm::vec4> samples = pattern(settings.samples, settings.weight, glm::dvec2(0.0), settings.exponent());
+  const std::vector<glm::vec4> samples =
+      pattern(settings.samples, settings.weight, glm::dvec2(0.0), settings.exponent());
   pattern_ =
       gl::Buffer("rsm gather pattern", samples.size() * sizeof(glm::vec4), samples.data(), gl::Usage::staticDraw);
   work_ = gl::Buffer("rsm gather work", sizeof(GatherCounts), nullptr, gl::Usage::dynamicCopy);

@@ -5,7 +5,7 @@
 // replaces xi1, and the weight is p xi1^(2p-1) (engine/rsm/rsm_gather.cpp). Lights are gathered one after the other,
 // one dispatch each: `adds` is 1 from the second on.
 #include "rsm/transfer.glsl"
-layout(std430, binding = 0) readonly buffer Pattern { vec4 pattern[]; };  // sine, cosine, both times the distance; weight, unused
+layout(std430, binding = 0) readonly buffer Pattern { vec4 pattern[]; };  // sine and cosine times distance; weight; 0
 uniform int adds;
 uniform float gatherRadius;  // r, of the farthest sample, as a fraction of the map's width
 #if INSPECTED

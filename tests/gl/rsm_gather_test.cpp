@@ -140,6 +140,9 @@ TEST_F(RsmGatherOnGl, OnASurfelBesideTheMapAndFarAwayItIsFiniteAndDark) {
     for (const glm::dvec3& e : probe(map, settings, pattern, onSurfels, 0.0f))
       EXPECT_TRUE(std::isfinite(luminance(e))) << nameOf(nearField);
     for (const glm::dvec3& e : probe(map, settings, pattern, outside, 0.0f))
+      EXPECT_TRUE(luminance(e) >= 0.0 && luminance(e) < 1e-3) << nameOf(nearField) << " " << luminance(e);
+    settings.reach = RsmGather::Reach::radius;
+    for (const glm::dvec3& e : probe(map, settings, pattern, outside, 0.0f))
       EXPECT_EQ(luminance(e), 0.0) << nameOf(nearField);
     for (const glm::dvec3& e : probe(dark, settings, pattern, onSurfels, 0.0f))
       EXPECT_EQ(luminance(e), 0.0) << nameOf(nearField);
@@ -267,7 +270,7 @@ TEST_F(RsmRendered, TheWallOfACornerHasTheExactIrradiance) {
 TEST_F(RsmRendered, InterpolationEqualsTheFullGatherWhereRefusedAndNearlyElsewhere) {
   const Scene scene = room();
   RenderSettings s = settings();
-  s.of<RsmGather::Settings>().samples = 2048;  // the pattern's own noise low: interpolation's error alone
+  s.of<RsmGather::Settings>().samples = 4096;  // the pattern's own noise low: interpolation's error alone
   s.of<RsmGather::Settings>().interpolate = false;
   const Result off = render(scene, s);
   s.of<RsmGather::Settings>().interpolate = true;
@@ -301,7 +304,7 @@ TEST_F(RsmRendered, InterpolationEqualsTheFullGatherWhereRefusedAndNearlyElsewhe
     EXPECT_GT(refused, 100u);
     EXPECT_GT(count, 8000.0);
     EXPECT_LT(error, before);
-    before = 0.6 * error;
+    before = 0.65 * error;
     EXPECT_EQ(on.counts.refused, refused);
     EXPECT_EQ(on.counts.pixels, surfaces);
     EXPECT_EQ(off.counts.refused, 0u);
