@@ -303,6 +303,25 @@ void addReach(std::vector<StabilityCase>& cases) {
                      }});
 }
 
+/// A dark floor under a coat and a lamp, whose highlight is in the picture.
+void addCoat(std::vector<StabilityCase>& cases) {
+  for (const char* technique : {"direct", "radiosity"})
+    cases.push_back({technique, "a coated floor under a lamp, against paths", "alpha 0.2, albedo 0.03",
+                     [technique](const StabilityContext& c) {
+                       SceneParts parts("coat");
+                       const int floor = parts.material(glm::vec3(0.03f));
+                       parts.materialAt(floor).specular = glm::vec3(0.5f);
+                       parts.materialAt(floor).roughness = 0.45f;
+                       parts.plate({0, 0, 0}, {0, 0, 4}, {4, 0, 0}, floor);
+                       parts.scene().points.push_back({{0, 1.5, -2}, glm::vec3(3.0f)});
+                       parts.scene().cameras.push_back(limitsCamera({0, 1.5, 2}, {0, 0, 0}, 0.7));
+                       return Measurement{1.0,
+                                          limitsPicture(c, parts.scene(), technique, 1.0) /
+                                              limitsPath(c, parts.scene(), 512, 1).mean.x,
+                                          0.02};
+                     }});
+}
+
 /// What the published form factors and masks do to radiosity's light, which its picture must show.
 void addAsPublished(std::vector<StabilityCase>& cases) {
   cases.push_back({"radiosity", "direct light between plates as published, over the exact one: its error shows",
@@ -399,6 +418,7 @@ void addLimitCases(std::vector<StabilityCase>& cases) {
   addBeyondHalfFloats(cases);
   addReach(cases);
   addAsPublished(cases);
+  addCoat(cases);
   cases.push_back({"radiosity", "a lamp whose picture is one white texel of 3 x 3", "1.5 x 1.5, 0.4 above",
                    [](const StabilityContext& c) {
                      SceneParts parts("picture");

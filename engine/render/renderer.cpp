@@ -194,7 +194,8 @@ void Renderer::warnOfWhatIsLeftOut(const TechniqueEntry& technique) {
   const std::vector<std::string> reflecting = namesOfDrawn(gpuScene_->scene(), isMostlyReflection);
   if (!reflects && settings_.component != Component::direct && !reflecting.empty())
     warn(fmt::format("what surfaces reflect or let through is left out{}: {} ({} draw it)",
-                     geometry_ ? ", they look matt" : ", but lamps' highlights", fmt::join(reflecting, ", "),
+                     geometry_ ? ", they look matt but for lamps' highlights" : ", but lamps' highlights",
+                     fmt::join(reflecting, ", "),
                      techniquesThat([](const TechniqueEntry& t) { return t.drawsReflections; })));
   // Reflected rays find surfaces behind glass, but not what passes it from a point, a spot or the sun.
   const std::vector<std::string> casters = namesOfDrawn(gpuScene_->scene(), [](const Material& material) {
