@@ -328,8 +328,8 @@ void addAsPublished(std::vector<StabilityCase>& cases) {
                    "--fidelity original", [](const StabilityContext& c) {
                      SceneParts parts("plates");
                      parts.plate({0, 0, 0}, {0, 0, 2}, {2, 0, 0}, parts.material(glm::vec3(0.5f)));
-                     parts.plate({0, 0.2, 0}, {2, 0, 0}, {0, 0, 2}, parts.material(glm::vec3(0.0f), glm::vec3(1.0f)));
-                     parts.scene().cameras.push_back(limitsCamera({0, 0.1, 0}, {0, 0, 0}, 1e-3));
+                     parts.plate({0, 1, 0}, {2, 0, 0}, {0, 0, 2}, parts.material(glm::vec3(0.0f), glm::vec3(1.0f)));
+                     parts.scene().cameras.push_back(limitsCamera({0, 0.5, 0}, {0, 0, 0}, 1e-3));
                      RenderSettings settings;
                      settings.technique = "radiosity";
                      settings.component = Component::direct;

@@ -1,6 +1,6 @@
-// Direct light at a point by shadow rays, reflected; see engine/radiosity/direct_rays.hpp. Storage block 1, texture units 60
-// and 61. Unoccluded irradiance from an emissive triangle is computed in closed form (radiosity/polygon.glsl). Its
-// visible fraction is the mean over points of the triangle, evenly distributed by area and weighted by their
+// Direct light at a point by shadow rays, reflected; see engine/radiosity/direct_rays.hpp. Storage block 1, texture
+// units 60 and 61. Unoccluded irradiance from an emissive triangle is computed in closed form (radiosity/polygon.glsl).
+// Its visible fraction is the mean over points of the triangle, evenly distributed by area and weighted by their
 // contribution, so without a blocker there is no noise.
 #include "lib/spot.glsl"
 #include "lib/tangent.glsl"
