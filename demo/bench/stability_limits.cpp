@@ -318,7 +318,7 @@ void addCoat(std::vector<StabilityCase>& cases) {
                        return Measurement{1.0,
                                           limitsPicture(c, parts.scene(), technique, 1.0) /
                                               limitsPath(c, parts.scene(), 512, 1).mean.x,
-                                          0.02};
+                                          0.03};
                      }});
 }
 
