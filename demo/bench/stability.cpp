@@ -83,6 +83,7 @@ std::vector<StabilityRow> runStability(const StabilityContext& context, const st
   addPathCases(cases);
   addMediaCases(cases);
   addLimitCases(cases);
+  addLeakCases(cases);
   addMotionCases(cases);
   std::string known;
   for (const StabilityCase& c : cases)

@@ -54,6 +54,7 @@ void addMotionCases(std::vector<StabilityCase>& cases);
 void addPathCases(std::vector<StabilityCase>& cases);
 /// Cases of light at its limits, of several techniques.
 void addLimitCases(std::vector<StabilityCase>& cases);
+void addLeakCases(std::vector<StabilityCase>& cases);
 void addMediaCases(std::vector<StabilityCase>& cases);
 void addRadiosityCases(std::vector<StabilityCase>& cases);
 

@@ -2,8 +2,10 @@
 // sun, media within media, light that four samples do not find, rooms and lamps wound the other way, a sky of one
 // texel. Each has a closed form or a scene that it must equal.
 #include "base/angles.hpp"
+#include "base/log.hpp"
 #include "bench/stability.hpp"
 #include "bench/stability_room.hpp"
+#include "irradiance_cache/settings.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "radiosity/radiosity_view.hpp"
 #include "render/renderer.hpp"
@@ -169,8 +171,9 @@ void addDense(std::vector<StabilityCase>& cases) {
                          Dense{3e3, 30.0, true}, Dense{3e3, 300.0, true}})
     for (const bool once : {true, false}) {
       if (d.grid && !once) continue;
-      cases.push_back({"path", fmt::format("a dense medium{} under the sun, {}", d.grid ? " on a grid" : "",
-                                           once ? "scattered once" : "all light"),
+      cases.push_back({"path",
+                       fmt::format("a dense medium{} under the sun, {}", d.grid ? " on a grid" : "",
+                                   once ? "scattered once" : "all light"),
                        fmt::format("{:g} free paths", d.extinction * d.halfWidth), [=](const StabilityContext& c) {
                          return limitsWithin(limitsPath(c, denseSlab(d.extinction, d.halfWidth, d.grid),
                                                         once ? 512u : 4096u, once ? 1u : PathTracer::kUnlimited),
@@ -218,6 +221,171 @@ Scene turned(bool room, bool lamp) {
   return std::move(parts.scene());
 }
 
+/// A floor under a sky that is one bright texel; with an albedo of 0.5 it has this radiance.
+Scene oneTexel(double& expected) {
+  SceneParts parts("texel");
+  parts.plate({0, 0, 0}, {0, 0, 2}, {2, 0, 0}, parts.material(glm::vec3(0.5f)));
+  Environment sky{glm::vec3(1.0f), Image(64, 32), 0.0};
+  sky.picture->at(20, 7) = glm::vec3(1000.0f);
+  parts.scene().environment = sky;
+  parts.scene().cameras.push_back(limitsCamera({0, 1, 0}, {0, 0, 0}, 0.9));
+  const double top = std::cos(kPi * 7 / 32), bottom = std::cos(kPi * 8 / 32);
+  expected = 0.5 * 1000.0 / 64.0 * (top * top - bottom * bottom);
+  return std::move(parts.scene());
+}
+
+double cachePicture(const StabilityContext& c, const Scene& scene, CacheTransport transport) {
+  RenderSettings settings;
+  settings.technique = "irradiance-cache";
+  settings.size = kLimitsSize;
+  settings.fullFloatTarget = true;
+  settings.of<IrradianceCacheSettings>().transport = transport;
+  Renderer renderer(c.context, c.programs, scene, settings);
+  renderer.renderToTheEnd(scene.cameras.front());
+  return meanOf(renderer.readRadiance()).x;
+}
+
+/// A closed room with a lamp of radiance 1, and another with one of radiance `beside`, if that is above 0.
+Scene dimRoom(float beside) {
+  SceneParts parts("dim");
+  const int wall = parts.material(glm::vec3(0.6f));
+  for (const double x : {0.0, 4.0}) {
+    const float radiance = x > 0.0 ? beside : 1.0f;
+    if (!(radiance > 0.0f)) continue;
+    for (int axis = 0; axis < 3; ++axis)
+      for (const double side : {-1.0, 1.0}) {
+        glm::dvec3 centre(0.0), u(0.0), v(0.0);
+        centre[axis] = side;
+        centre.x += x;
+        u[(axis + 1) % 3] = v[(axis + 2) % 3] = 2.0;
+        parts.plate(centre, side < 0.0 ? u : v, side < 0.0 ? v : u, wall);
+      }
+    parts.plate({x, 0.6, 0}, {0.4, 0, 0}, {0, 0, 0.4}, parts.material(glm::vec3(0.0f), glm::vec3(radiance)));
+  }
+  parts.scene().cameras.push_back(limitsCamera({0.8, 0.3, 0.8}, {-0.5, -0.6, -0.5}, 1.2));
+  return std::move(parts.scene());
+}
+
+void addBeyondHalfFloats(std::vector<StabilityCase>& cases) {
+  for (const float beside : {1e5f, 1e9f})
+    cases.push_back({"irradiance-cache", "rays: a dim room beside a bright one, against alone",
+                     fmt::format("{:g} times as bright", static_cast<double>(beside)), [=](const StabilityContext& c) {
+                       return Measurement{1.0,
+                                          cachePicture(c, dimRoom(beside), CacheTransport::rays) /
+                                              cachePicture(c, dimRoom(0.0f), CacheTransport::rays),
+                                          0.05};
+                     }});
+}
+
+/// The wall beside a lit floor: one bounce, by reflective shadow maps and by paths.
+void addReach(std::vector<StabilityCase>& cases) {
+  for (const bool sun : {true, false})
+    cases.push_back({"rsm", "one bounce of a lit floor on a wall, against paths", sun ? "sun" : "point lamp",
+                     [sun](const StabilityContext& c) {
+                       SceneParts parts("reach");
+                       const int grey = parts.material(glm::vec3(0.7f));
+                       parts.plate({0, 0, 0}, {0, 0, 4}, {4, 0, 0}, grey);
+                       parts.plate({0, 1.5, -2}, {4, 0, 0}, {0, 3, 0}, grey);
+                       Scene& scene = parts.scene();
+                       if (sun) scene.sun = DirectionalLight{{0.001, -1.0, 0.001}, glm::vec3(3.0f)};
+                       else scene.points.push_back({{0, 1.5, 1}, glm::vec3(1.0f)});
+                       scene.cameras.push_back(limitsCamera({0, 1.5, 3}, {0, 1.2, -2}, 0.2));
+                       RenderSettings settings;
+                       settings.technique = "rsm";
+                       settings.component = Component::indirect;
+                       settings.size = kLimitsSize;
+                       settings.fullFloatTarget = true;
+                       Renderer renderer(c.context, c.programs, scene, settings);
+                       renderer.renderToTheEnd(scene.cameras.front());
+                       const double all = limitsPath(c, scene, 512, 2).mean.x,
+                                    direct = limitsPath(c, scene, 512, 1).mean.x;
+                       return Measurement{1.0, meanOf(renderer.readRadiance()).x / (all - direct), 0.03};
+                     }});
+}
+
+/// A dark floor under a coat and a lamp, whose highlight is in the picture.
+void addCoat(std::vector<StabilityCase>& cases) {
+  for (const char* technique : {"direct", "radiosity"})
+    cases.push_back({technique, "a coated floor under a lamp, against paths", "alpha 0.2, albedo 0.03",
+                     [technique](const StabilityContext& c) {
+                       SceneParts parts("coat");
+                       const int floor = parts.material(glm::vec3(0.03f));
+                       parts.materialAt(floor).specular = glm::vec3(0.5f);
+                       parts.materialAt(floor).roughness = 0.45f;
+                       parts.plate({0, 0, 0}, {0, 0, 4}, {4, 0, 0}, floor);
+                       parts.scene().points.push_back({{0, 1.5, -2}, glm::vec3(3.0f)});
+                       parts.scene().cameras.push_back(limitsCamera({0, 1.5, 2}, {0, 0, 0}, 0.7));
+                       return Measurement{1.0,
+                                          limitsPicture(c, parts.scene(), technique, 1.0) /
+                                              limitsPath(c, parts.scene(), 512, 1).mean.x,
+                                          0.03};
+                     }});
+}
+
+/// What the published form factors and masks do to radiosity's light, which its picture must show.
+void addAsPublished(std::vector<StabilityCase>& cases) {
+  cases.push_back({"radiosity", "direct light between plates as published, over the exact one: its error shows",
+                   "--fidelity original", [](const StabilityContext& c) {
+                     SceneParts parts("plates");
+                     parts.plate({0, 0, 0}, {0, 0, 2}, {2, 0, 0}, parts.material(glm::vec3(0.5f)));
+                     parts.plate({0, 1, 0}, {2, 0, 0}, {0, 0, 2}, parts.material(glm::vec3(0.0f), glm::vec3(1.0f)));
+                     parts.scene().cameras.push_back(limitsCamera({0, 0.5, 0}, {0, 0, 0}, 1e-3));
+                     RenderSettings settings;
+                     settings.technique = "radiosity";
+                     settings.component = Component::direct;
+                     settings.size = kLimitsSize;
+                     settings.fullFloatTarget = true;
+                     auto& view = settings.of<RadiosityView::Settings>();
+                     view.solution.patches.longestEdge = 0.5;
+                     view.direct = RadiosityView::Direct::patches;
+                     for (bool RadiosityDeviations::*deviation :
+                          {&RadiosityDeviations::publishedMap, &RadiosityDeviations::centroid,
+                           &RadiosityDeviations::fixedOrientation, &RadiosityDeviations::noNearField})
+                       view.solution.deviations.*deviation = true;
+                     Renderer renderer(c.context, c.programs, parts.scene(), settings);
+                     renderer.renderToTheEnd(parts.scene().cameras.front());
+                     return Measurement{0.95, meanOf(renderer.readRadiance()).x / (0.5 * toRectangle(1.0, 1.0, 1.0)),
+                                        0.0, Rule::atMost};
+                   }});
+  cases.push_back({"radiosity", "light through a sheet that its mask cuts away: it blocks, with a warning", "mask",
+                   [](const StabilityContext& c) {
+                     SceneParts parts("mask");
+                     parts.plate({0, 0, 0}, {0, 0, 2}, {2, 0, 0}, parts.material(glm::vec3(0.5f)));
+                     const int leaf = parts.material(glm::vec3(0.5f));
+                     Texture& texture = parts.scene().textures.emplace_back();
+                     texture.bitmap = {1, 1, {255, 255, 255, 0}};
+                     texture.bitmap.hasAlpha = true;
+                     parts.materialAt(leaf).diffuseTexture = 0;
+                     parts.materialAt(leaf).alphaMasked = true;
+                     parts.plate({0, 1, 0}, {0, 0, 4}, {4, 0, 0}, leaf);
+                     parts.scene().points.push_back({{0, 1.5, 0}, glm::vec3(1.0f)});
+                     parts.scene().cameras.push_back(limitsCamera({0, 0.5, 0}, {0, 0, 0}, 0.5));
+                     const std::size_t before = loggedWarnings().size();
+                     const double arrives = limitsPicture(c, parts.scene(), "radiosity", 1.0);
+                     return Measurement{1.0, arrives + static_cast<double>(loggedWarnings().size() - before), 0.0};
+                   }});
+  cases.push_back(
+      {"radiosity", "a lamp in the ceiling's plane, seen: share of the picture that shines", "32 x 32",
+       [](const StabilityContext& c) {
+         SceneParts parts("seen");
+         parts.plate({0, 0.7, 0}, {2, 0, 0}, {0, 0, 2}, parts.material(glm::vec3(0.0f)));
+         parts.plate({0.013, 0.7, 0.021}, {1, 0, 0}, {0, 0, 1}, parts.material(glm::vec3(0.0f), glm::vec3(1.0f)));
+         parts.scene().cameras.push_back(limitsCamera({0.1, -0.7, 0.07}, {0.013, 0.7, 0.021}, 1.0));
+         Scene alone = parts.scene();
+         alone.meshes.erase(alone.meshes.begin());
+         RenderSettings settings;
+         settings.technique = "radiosity";
+         settings.size = {32, 32};
+         settings.fullFloatTarget = true;
+         const auto shines = [&](const Scene& scene) {
+           Renderer renderer(c.context, c.programs, scene, settings);
+           renderer.renderToTheEnd(scene.cameras.front());
+           return meanOf(renderer.readRadiance()).x;
+         };
+         return Measurement{1.0, shines(parts.scene()) / shines(alone), 1e-3};
+       }});
+}
+
 }  // namespace
 
 void addLimitCases(std::vector<StabilityCase>& cases) {
@@ -230,23 +398,27 @@ void addLimitCases(std::vector<StabilityCase>& cases) {
                        const PathTracer::Statistics s = limitsPath(c, nested(denseFirst), 16384);
                        return Measurement{std::exp(-4.0), s.mean.x, 4.0 * s.meanError.x};
                      }});
-  cases.push_back({"path", "four samples that find no light: relative error", "optical depth 1e-6",
-                   [](const StabilityContext& c) {
-                     Scene thin = denseSlab(1e-6, 1.0, false);
-                     return Measurement{1.0, std::min(limitsPath(c, thin, 4, 1).relativeError, 1e9), 0.0,
-                                        Rule::atLeast};
-                   }});
-  cases.push_back({"radiosity", "a sky of one bright texel over a floor", "64 x 32", [](const StabilityContext& c) {
-                     SceneParts parts("texel");
-                     parts.plate({0, 0, 0}, {0, 0, 2}, {2, 0, 0}, parts.material(glm::vec3(0.5f)));
-                     Environment sky{glm::vec3(1.0f), Image(64, 32), 0.0};
-                     sky.picture->at(20, 7) = glm::vec3(1000.0f);
-                     parts.scene().environment = sky;
-                     parts.scene().cameras.push_back(limitsCamera({0, 1, 0}, {0, 0, 0}, 0.9));
-                     const double top = std::cos(kPi * 7 / 32), bottom = std::cos(kPi * 8 / 32);
-                     const double expected = 0.5 * 1000.0 / 64.0 * (top * top - bottom * bottom);
-                     return Measurement{expected, limitsPicture(c, parts.scene(), "radiosity", 0.5), 0.01 * expected};
-                   }});
+  cases.push_back(
+      {"path", "four samples that find no light: relative error", "optical depth 1e-6", [](const StabilityContext& c) {
+         Scene thin = denseSlab(1e-6, 1.0, false);
+         return Measurement{1.0, std::min(limitsPath(c, thin, 4, 1).relativeError, 1e9), 0.0, Rule::atLeast};
+       }});
+  for (const char* technique : {"radiosity", "irradiance-cache"})
+    cases.push_back({technique, "a sky of one bright texel over a floor",
+                     std::string_view(technique) == "radiosity" ? "64 x 32" : "64 x 32, gather",
+                     [technique](const StabilityContext& c) {
+                       double expected = 0.0;
+                       const Scene scene = oneTexel(expected);
+                       return Measurement{expected,
+                                          std::string_view(technique) == "radiosity"
+                                              ? limitsPicture(c, scene, technique, 0.5)
+                                              : cachePicture(c, scene, CacheTransport::gather),
+                                          (std::string_view(technique) == "radiosity" ? 0.01 : 0.02) * expected};
+                     }});
+  addBeyondHalfFloats(cases);
+  addReach(cases);
+  addAsPublished(cases);
+  addCoat(cases);
   cases.push_back({"radiosity", "a lamp whose picture is one white texel of 3 x 3", "1.5 x 1.5, 0.4 above",
                    [](const StabilityContext& c) {
                      SceneParts parts("picture");

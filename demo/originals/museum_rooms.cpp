@@ -17,6 +17,10 @@ constexpr std::array kRooms{
          "Samples denser in the middle must be weighted by one over their density, which falls with 1 / xi alone.",
          "weight xi^2", "weight xi", "A constant map (lab 2, task 5)",
          "tests/gl/lpv_deviations_test.cpp: GatherWeight"},
+    Room{"rsm.reach", "Walls beside a sunlit floor are too dark, the more the larger the floor.",
+         "Samples end at the radius r around a point's place in the map; light from farther away is left out.",
+         "all samples within r", "half of the samples within r, half in the whole map",
+         "One bounce of a floor on a wall (57 % of it is lost)", "tests/gl/lpv_deviations_test.cpp: Reach"},
     Room{"rsm.unbounded", "Bright dots in corners, different in every frame.",
          "A point light near a surface is unbounded: 1 / d^2 grows without end, where the piece of surface that it "
          "stands for would not.",

@@ -36,7 +36,7 @@ std::vector<float> CountViews::surfaces(const glm::mat4& clipFromWorld, glm::ive
   const gl::Buffer buffer("overdraw constants", sizeof constants, &constants, gl::Usage::staticDraw);
   buffer.bindUniform(BLOCK_FRAME);
   const gl::Program& program = programs_.loadRaster("overdraw", "forward/depth.vert", "walk/overdraw.frag",
-                                                    {{"ALPHA_MASK", 0}, {"FROM_SUN", 0}});
+                                                    {{"ALPHA_MASK", 0}, {"FROM_SUN", 0}, {"EMITTERS", 0}});
   {
     gl::RasterState state;
     state.blend = gl::Blend::add;

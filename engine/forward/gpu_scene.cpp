@@ -190,6 +190,7 @@ gl::ShaderFlags GpuScene::materialFlags(bool masked) const {
   return {{"DIFFUSE_TEXTURES", features_.diffuseTextures},
           {"ALPHA_MASK", masked},
           {"EMISSION_TEXTURES", features_.emissionTextures},
+          {"EMITTERS", features_.emission},
           {"NORMAL_MAPS", features_.normalMaps},
           {"METAL_MAPS", features_.metalMaps},
           {"SPECULAR", features_.specular}};

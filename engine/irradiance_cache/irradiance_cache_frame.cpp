@@ -19,18 +19,30 @@ IrradianceCache::Light cachedLight(Component component) {
                                             : Light::all;
 }
 
-/// Half floats hold a light only beside one up to 1e4 times as strong.
-IrradianceCacheSettings cacheSettings(const FrameParts& parts) {
-  constexpr float kMostRatio = 1e4f;
-  IrradianceCacheSettings settings = parts.settings.of<IrradianceCacheSettings>();
+/// The weakest and the strongest of several lights.
+struct Strengths {
   float least = std::numeric_limits<float>::infinity(), most = 0.0f;
-  const auto add = [&](const glm::vec3& light) {
+
+  void add(const glm::vec3& light) {
     const float strength = std::max({light.x, light.y, light.z});
     if (strength > 0.0f) least = std::min(least, strength), most = std::max(most, strength);
-  };
-  for (const SpotLight& lamp : parts.scene.spots) add(lamp.intensity);
-  for (const PointLight& lamp : parts.scene.points) add(lamp.intensity);
-  settings.fullFloat = settings.fullFloat || most / kMostRatio > least;
+  }
+  /// Half floats hold a light only beside one up to 1e4 times as strong.
+  bool fitHalfFloats() const {
+    constexpr float kMostRatio = 1e4f;
+    return most / kMostRatio <= least;
+  }
+};
+
+IrradianceCacheSettings cacheSettings(const FrameParts& parts) {
+  IrradianceCacheSettings settings = parts.settings.of<IrradianceCacheSettings>();
+  Strengths lamps, surfaces;  // intensities; radiances
+  for (const SpotLight& lamp : parts.scene.spots) lamps.add(lamp.intensity);
+  for (const PointLight& lamp : parts.scene.points) lamps.add(lamp.intensity);
+  for (const Material& material : parts.scene.materials)
+    surfaces.add(material.emissionTexture >= 0 ? material.emissionScale : material.emission);
+  if (parts.scene.environment) surfaces.add(parts.scene.environment->radiance);
+  settings.fullFloat = settings.fullFloat || !lamps.fitHalfFloats() || !surfaces.fitHalfFloats();
   return settings;
 }
 

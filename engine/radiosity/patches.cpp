@@ -1,12 +1,14 @@
 #include "radiosity/patches.hpp"
 
 #include "base/error.hpp"
+#include "radiosity/contacts.hpp"
 #include "scene/texture_mean.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <unordered_map>
@@ -79,24 +81,22 @@ void complete(Patch& patch, const RadiosityMesh& mesh, const Scene& scene) {
         meanTexture(scene.textures[static_cast<std::size_t>(material.emissionTexture)].bitmap, patch.texCoord);
 }
 
-using Edge = std::pair<std::uint32_t, std::uint32_t>;
 struct EdgeHash {
-  std::size_t operator()(const Edge& e) const {
-    return (static_cast<std::size_t>(e.first) << 32 | e.second) * 0x9e3779b97f4a7c15u;
+  std::size_t operator()(const MeshEdge& e) const {
+    return (static_cast<std::size_t>(e[0]) << 32 | e[1]) * 0x9e3779b97f4a7c15u;
   }
 };
-Edge edgeOf(std::uint32_t a, std::uint32_t b) { return a < b ? Edge{a, b} : Edge{b, a}; }
 
 int longestEdge(const RadiosityMesh& mesh, const Patch& patch) {
   int longest = 0;
   double most = -1.0;
-  Edge mostEdge{};
+  MeshEdge mostEdge{};
   for (int k = 0; k < 3; ++k) {
     const std::uint32_t a = patch.point[static_cast<std::size_t>(k)],
                         b = patch.point[static_cast<std::size_t>((k + 1) % 3)];
     const glm::dvec3 d = mesh.points[a] - mesh.points[b];
     const double length = glm::dot(d, d);
-    const Edge edge = edgeOf(a, b);
+    const MeshEdge edge = edgeOf(a, b);
     // Equal edges: the same one must win in both of its patches, or marks would not terminate.
     if (length > most * (1.0 + 1e-12) || (length > most * (1.0 - 1e-12) && edge < mostEdge))
       most = length, longest = k, mostEdge = edge;
@@ -104,34 +104,83 @@ int longestEdge(const RadiosityMesh& mesh, const Patch& patch) {
   return longest;
 }
 
-/// Cuts a patch at the midpoint of edge k.
-std::array<Patch, 2> halved(const Patch& patch, int k, std::uint32_t middle) {
-  const auto a = static_cast<std::size_t>(k), b = (a + 1) % 3;
+/// Where light is interpolated at a point: between corners of patches that share an edge there, on which nothing stands
+/// that separates them.
+class LightFan {
+ public:
+  struct Corner {
+    std::uint32_t patch;
+    int corner;
+  };
+
+  LightFan(const RadiosityMesh& mesh, double crease, const std::vector<Corner>& corners)
+      : mesh_(mesh), first_(corners.size()) {
+    std::iota(first_.begin(), first_.end(), std::size_t{0});
+    for (std::size_t i = 0; i < corners.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        if (isContinuous(corners[i], corners[j], crease)) {
+          const std::size_t from = std::max(first_[i], first_[j]), to = std::min(first_[i], first_[j]);
+          std::ranges::replace(first_, from, to);
+        }
+  }
+  /// The first corner that shares its light with corner i.
+  std::size_t firstOf(std::size_t i) const { return first_[i]; }
+
+ private:
+  bool isContinuous(const Corner& a, const Corner& b, double crease) const {
+    const Patch &p = mesh_.patches[a.patch], &q = mesh_.patches[b.patch];
+    const auto normal = [](const Patch& patch, const Corner& c) {
+      return patch.normal[static_cast<std::size_t>(c.corner)];
+    };
+    if (p.material != q.material || static_cast<double>(glm::dot(normal(p, a), normal(q, b))) < crease) return false;
+    const std::uint32_t point = p.point[static_cast<std::size_t>(a.corner)];
+    return std::ranges::any_of(p.point, [&](std::uint32_t other) {
+      if (other == point || std::ranges::find(q.point, other) == q.point.end()) return false;
+      const auto standing = mesh_.standing.find(edgeOf(point, other));
+      return standing == mesh_.standing.end() || !isBetween(standing->second, p, q);
+    });
+  }
+  const RadiosityMesh& mesh_;
+  std::vector<std::size_t> first_;
+};
+
+}  // namespace
+
+std::array<Patch, 2> halvesOf(const Patch& patch, std::size_t k, double place, std::uint32_t at) {
+  const std::size_t next = (k + 1) % 3;
+  const auto share = static_cast<float>(place);
   std::array<Patch, 2> halves{patch, patch};
-  const glm::vec2 uv = 0.5f * (patch.texCoord[a] + patch.texCoord[b]);
-  const glm::vec3 sum = patch.normal[a] + patch.normal[b];
+  const glm::vec2 uv = (1.0f - share) * patch.texCoord[k] + share * patch.texCoord[next];
+  const glm::vec3 sum = (1.0f - share) * patch.normal[k] + share * patch.normal[next];
   const glm::vec3 normal = glm::dot(sum, sum) > 1e-12f ? glm::normalize(sum) : glm::vec3(patch.faceNormal);
-  for (const auto& [half, corner] : {std::pair<std::size_t, std::size_t>{0, b}, {1, a}}) {
-    halves[half].point[corner] = middle;
+  for (const auto& [half, corner] : {std::pair<std::size_t, std::size_t>{0, next}, {1, k}}) {
+    halves[half].point[corner] = at;
     halves[half].texCoord[corner] = uv;
     halves[half].normal[corner] = normal;
   }
   return halves;
 }
 
-}  // namespace
-
 void numberLightVertices(RadiosityMesh& mesh, const PatchSettings& settings) {
+  std::vector<bool> isContact(mesh.points.size(), false);
+  for (const auto& [edge, directions] : mesh.standing) isContact[edge[0]] = isContact[edge[1]] = true;
   struct Group {
     int material;
     glm::vec3 normal;
     std::uint32_t index;
   };
   std::vector<std::vector<Group>> groups(mesh.points.size());
+  std::map<std::uint32_t, std::vector<LightFan::Corner>> contacts;
   std::uint32_t count = 0;
-  for (Patch& patch : mesh.patches)
+  for (std::uint32_t p = 0; p < mesh.patches.size(); ++p)
     for (int k = 0; k < 3; ++k) {
-      auto& here = groups[patch.point[static_cast<std::size_t>(k)]];
+      Patch& patch = mesh.patches[p];
+      const std::uint32_t point = patch.point[static_cast<std::size_t>(k)];
+      if (isContact[point]) {
+        contacts[point].push_back({p, k});
+        continue;
+      }
+      auto& here = groups[point];
       const glm::vec3 normal = patch.normal[static_cast<std::size_t>(k)];
       const auto same = [&](const Group& g) {
         return g.material == patch.material && static_cast<double>(glm::dot(g.normal, normal)) >= settings.crease;
@@ -140,6 +189,14 @@ void numberLightVertices(RadiosityMesh& mesh, const PatchSettings& settings) {
       if (found == here.end()) found = here.insert(here.end(), {patch.material, normal, count++});
       patch.light[static_cast<std::size_t>(k)] = found->index;
     }
+  for (const auto& [point, corners] : contacts) {
+    const LightFan fan(mesh, settings.crease, corners);
+    std::vector<std::uint32_t> numbers;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      numbers.push_back(fan.firstOf(i) == i ? count++ : numbers[fan.firstOf(i)]);
+      mesh.patches[corners[i].patch].light[static_cast<std::size_t>(corners[i].corner)] = numbers[i];
+    }
+  }
   mesh.lightVertices = count;
 }
 
@@ -152,7 +209,7 @@ double RadiosityMesh::area() const {
 RadiosityMesh refined(const Scene& scene, const RadiosityMesh& mesh, const PatchSettings& settings,
                       const std::function<bool(std::size_t, int)>& marked, std::vector<std::uint32_t>* parent) {
   // Marks grow until each patch with a marked edge has its longest one marked.
-  std::unordered_map<Edge, std::uint32_t, EdgeHash> middles;  // of marked edges
+  std::unordered_map<MeshEdge, std::uint32_t, EdgeHash> middles;  // of marked edges
   RadiosityMesh result = mesh;
   const auto mark = [&](const Patch& patch, int k) {
     const std::uint32_t a = patch.point[static_cast<std::size_t>(k)],
@@ -160,7 +217,7 @@ RadiosityMesh refined(const Scene& scene, const RadiosityMesh& mesh, const Patch
     const auto [it, fresh] = middles.try_emplace(edgeOf(a, b), 0u);
     if (fresh) {
       it->second = static_cast<std::uint32_t>(result.points.size());
-      result.points.push_back(0.5 * (mesh.points[it->first.first] + mesh.points[it->first.second]));
+      result.points.push_back(0.5 * (mesh.points[it->first[0]] + mesh.points[it->first[1]]));
     }
     return fresh;
   };
@@ -178,6 +235,11 @@ RadiosityMesh refined(const Scene& scene, const RadiosityMesh& mesh, const Patch
       for (int k = 0; k < 3; ++k)
         if (middleOf(patch, k) && mark(patch, longestEdge(mesh, patch))) grown = true;
   }
+  for (const auto& [edge, middle] : middles) {
+    auto whole = result.standing.extract(edge);
+    if (whole.empty()) continue;
+    for (const std::uint32_t end : edge) result.standing[edgeOf(end, middle)] = whole.mapped();
+  }
   result.patches.clear();
   if (parent) parent->clear();
   for (std::size_t i = 0; i < mesh.patches.size(); ++i) {
@@ -193,7 +255,7 @@ RadiosityMesh refined(const Scene& scene, const RadiosityMesh& mesh, const Patch
         middle = middleOf(patch, k);
       }
       if (middle) {
-        const auto halves = halved(patch, cut, *middle);
+        const auto halves = halvesOf(patch, static_cast<std::size_t>(cut), 0.5, *middle);
         open.insert(open.end(), halves.rbegin(), halves.rend());
       } else {
         // A patch that was not cut is complete: texture means are expensive.
@@ -280,6 +342,9 @@ RadiosityMesh makePatches(const Scene& scene, const PatchSettings& settings) {
   if (mesh.patches.empty())
     throwBadInput("{}: no triangle with an area ({} without, {} with corners that are not finite)", scene.name,
                   mesh.degenerate, mesh.notFinite);
+  if (settings.contacts)
+    for (const std::uint32_t changed : cutAtContacts(mesh, settings.longestEdge))
+      complete(mesh.patches[changed], mesh, scene);
   // Cut until no edge is too long.
   numberLightVertices(mesh, settings);
   if (settings.longestEdge > 0.0) {

@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <span>
 #include <vector>
 
@@ -34,7 +35,11 @@ struct Patch {
   bool isBack = false;  ///< a triangle's second patch, on its other side: backs.hpp
 };
 
+using MeshEdge = std::array<std::uint32_t, 2>;  ///< two points, the smaller index first
+constexpr MeshEdge edgeOf(std::uint32_t a, std::uint32_t b) { return a < b ? MeshEdge{a, b} : MeshEdge{b, a}; }
+
 struct PatchSettings {
+  bool contacts = false;  ///< patches are cut where other triangles touch or cross them: contacts.hpp
   double longestEdge = 0.0;  ///< scene units; longer edges are halved. 0: triangles stay whole
   double weld = 1e-6;  ///< corners closer than this fraction of the scene's largest extent are one point
   double crease = 0.94;  ///< minimum cosine between shading normals across which light is interpolated
@@ -43,6 +48,9 @@ struct PatchSettings {
 struct RadiosityMesh {
   std::vector<glm::dvec3> points;
   std::vector<Patch> patches;
+  /// Unit directions in which surfaces stand on an edge. Between two patches that both have such a surface in front,
+  /// light is not interpolated: it comes from two sides of a wall.
+  std::map<MeshEdge, std::vector<glm::dvec3>> standing;
   std::size_t lightVertices = 0;
   std::size_t degenerate = 0;  ///< triangles without area, omitted; narrow ones that emit have one
   std::size_t notFinite = 0;  ///< triangles with a corner that is not finite, omitted
@@ -68,8 +76,12 @@ RadiosityMesh refined(const Scene& scene, const RadiosityMesh& mesh, const Patch
                       const std::function<bool(std::size_t, int)>& marked,
                       std::vector<std::uint32_t>* parent = nullptr);
 
-/// Numbers the light vertices: corners share one if point and material are the same and their normals differ by less
-/// than the crease.
+/// Cuts a patch at a place along edge k (0 at corner k, 1 at the next), which is the point `at`. The first half keeps
+/// corner k. Areas and means are those of the whole patch.
+std::array<Patch, 2> halvesOf(const Patch& patch, std::size_t k, double place, std::uint32_t at);
+
+/// Numbers the light vertices: corners share one if point and material are the same, their normals differ by less than
+/// the crease, and nothing that stands on an edge is between them.
 void numberLightVertices(RadiosityMesh& mesh, const PatchSettings& settings);
 
 /// Patches as a separate scene, in order, for a hierarchy; its second material emits.

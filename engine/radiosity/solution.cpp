@@ -81,6 +81,7 @@ PatchSettings patchesOf(const Scene& scene, const RadiositySolutionSettings& set
   PatchSettings patches = settings.patches;
   if (patches.longestEdge <= 0.0) patches.longestEdge = largestExtent(scene) / kEdges;
   if (settings.wholeTriangles) patches.longestEdge = 0.0;
+  patches.contacts = !settings.wholeTriangles && !settings.deviations.centroid;
   return patches;
 }
 

@@ -73,6 +73,7 @@ std::function<bool(const RadiosityStage&)> SolutionWatch::innermostOnStage() {
 std::filesystem::path SolutionWatch::checkpointOf(const Scene& scene, const RadiositySolutionSettings& settings) {
   if (!innermostSolutionWatch || innermostSolutionWatch->folder_.empty()) return {};
   Hash hash;
+  hash.add(std::uint32_t{2});  // version of how patches are made: 2 ends them at contacts
   if (keeps(settings)) addSurfaces(hash, scene);
   else addScene(hash, scene);
   hash.add(std::string_view(textOf(settings)));

@@ -200,8 +200,18 @@ void Renderer::warnOfWhatIsLeftOut(const TechniqueEntry& technique) {
   const std::vector<std::string> reflecting = namesOfDrawn(gpuScene_->scene(), isMostlyReflection);
   if (!reflects && settings_.component != Component::direct && !reflecting.empty())
     warn(fmt::format("what surfaces reflect or let through is left out{}: {} ({} draw it)",
-                     geometry_ ? ", they look matt" : ", but lamps' highlights", fmt::join(reflecting, ", "),
+                     geometry_ ? ", they look matt but for lamps' highlights" : ", but lamps' highlights",
+                     fmt::join(reflecting, ", "),
                      techniquesThat([](const TechniqueEntry& t) { return t.drawsReflections; })));
+  // Reflected rays find surfaces behind glass, but not what passes it from a point, a spot or the sun.
+  const std::vector<std::string> casters = namesOfDrawn(gpuScene_->scene(), [](const Material& material) {
+    return material.bsdf == Bsdf::dielectric || material.bsdf == Bsdf::mirror;
+  });
+  if (reflects && features_.anyLight() && !casters.empty())
+    warn(
+        fmt::format("sun and lamps shine neither through glass and water nor by way of mirrors (caustics): {} ({} "
+                    "draws that light)",
+                    fmt::join(casters, ", "), draws));
   const std::vector<std::string> bodies = namesOfDrawn(gpuScene_->scene(), [](const Material& material) {
     return material.bsdf == Bsdf::dielectric && material.interior >= 0;
   });
@@ -317,11 +327,12 @@ SurfacePrograms Renderer::surfacePrograms(gl::ProgramLibrary& programs, bool ins
 
 void Renderer::loadPrograms(gl::ProgramLibrary& programs) {
   surfacePrograms_ = surfacePrograms(programs, false);
-  depthPrograms_.opaque =
-      &programs.loadRaster("depth opaque", "forward/depth.vert", "", {{"ALPHA_MASK", 0}, {"FROM_SUN", 0}});
-  if (features_.alphaMasks)
-    depthPrograms_.masked = &programs.loadRaster("depth masked", "forward/depth.vert", "forward/depth.frag",
-                                                 {{"ALPHA_MASK", 1}, {"FROM_SUN", 0}});
+  const auto loadDepth = [&](const char* name, const char* fragment, bool masked) {
+    return &programs.loadRaster(name, "forward/depth.vert", fragment,
+                                {{"ALPHA_MASK", masked}, {"FROM_SUN", 0}, {"EMITTERS", features_.emission}});
+  };
+  depthPrograms_.opaque = loadDepth("depth opaque", "", false);
+  if (features_.alphaMasks) depthPrograms_.masked = loadDepth("depth masked", "forward/depth.frag", true);
   toneMap_ = geometry_ ? geometry_->toneMap() : nullptr;
   if (!toneMap_) toneMap_ = &programs.loadRaster("tone map", "lib/fullscreen.vert", "forward/tonemap.frag");
 }

@@ -37,13 +37,24 @@ glm::ivec2 lowSize(glm::ivec2 size, int step) { return (size + step - 1) / step;
 
 }  // namespace
 
-std::vector<glm::vec4> RsmGather::pattern(int samples, Weight weight, const glm::dvec2& shift) {
+float RsmGather::Settings::farthest() const {
+  // The whole map, from any of its points; of a lamp's sphere the half turn.
+  return reach == Reach::map ? std::max(radius, std::numbers::sqrt2_v<float>) : radius;
+}
+
+double RsmGather::Settings::exponent() const {
+  return std::max(std::log2(static_cast<double>(farthest()) / static_cast<double>(radius)), 1.0);
+}
+
+std::vector<glm::vec4> RsmGather::pattern(int samples, Weight weight, const glm::dvec2& shift, double exponent) {
   std::vector<glm::vec4> result;
   for (int i = 0; i < samples; ++i) {
     const double xi1 = std::fmod((i + 0.5) / samples + shift.x, 1.0);
     const double angle = 2.0 * std::numbers::pi * (radicalInverse(static_cast<std::uint32_t>(i)) + shift.y);
-    result.emplace_back(xi1 * std::sin(angle), xi1 * std::cos(angle), weight == Weight::published ? xi1 * xi1 : xi1,
-                        0.0);
+    // One over the density of samples: distance times its derivative by xi1.
+    const double distance = std::pow(xi1, exponent), unbiased = exponent * std::pow(xi1, 2.0 * exponent - 1.0);
+    result.emplace_back(distance * std::sin(angle), distance * std::cos(angle),
+                        weight == Weight::published ? xi1 * unbiased : unbiased, 0.0);
   }
   return result;
 }
@@ -52,6 +63,7 @@ gl::ShaderFlags RsmGather::flags(const Settings& settings, Light light) {
   return {{"NEAR", static_cast<int>(settings.nearField)},
           {"ROTATION", settings.rotation == Rotation::noise},
           {"MAP_LIGHT", static_cast<int>(light)},
+          {"WHOLE_MAP", settings.reach == Reach::map},
           {"INSPECTED", 0}};
 }
 
@@ -71,7 +83,8 @@ RsmGather::RsmGather(gl::ProgramLibrary& programs, const std::array<bool, 3>& li
             : &programs.loadCompute(fmt::format("rsm gather{} all", name), "rsm/gather_all.comp", flagsOfLight);
   }
   if (settings.interpolates()) interpolate_ = &programs.loadCompute("rsm interpolate", "rsm/interpolate.comp");
-  const std::vector<glm::vec4> samples = pattern(settings.samples, settings.weight);
+  const std::vector<glm::vec4> samples =
+      pattern(settings.samples, settings.weight, glm::dvec2(0.0), settings.exponent());
   pattern_ =
       gl::Buffer("rsm gather pattern", samples.size() * sizeof(glm::vec4), samples.data(), gl::Usage::staticDraw);
   work_ = gl::Buffer("rsm gather work", sizeof(GatherCounts), nullptr, gl::Usage::dynamicCopy);
@@ -94,7 +107,7 @@ void RsmGather::bindMap(const gl::Program& program, const Settings& settings, co
   program.use();
   map.rsm.bind();
   program.set("adds", adds ? 1 : 0);
-  program.set("gatherRadius", settings.radius);
+  program.set("gatherRadius", settings.farthest());
   if (settings.nearField == Near::clamp)
     program.set("minimumDistance2", settings.clampTexels * settings.clampTexels * map.rsm.texelArea);
   if (map.rsm.light == Light::sun) return;

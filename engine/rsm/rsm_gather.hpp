@@ -21,11 +21,13 @@ namespace lucerna {
 class RsmGather {
  public:
   enum class Weight { unbiased, published };  ///< xi1, or xi1^2 [Dachsbacher2005]
+  enum class Reach { map, radius };  ///< half of the samples within the radius, half beyond; or all within
   enum class Rotation { none, noise };  ///< the same pattern for every pixel, or rotated by interleaved gradient noise
   enum class Near { none, clamp, disc, quad };  ///< replacement of 1/d^2 near a surfel; see README.md
   struct Settings {
     int samples = 400;
     float radius = 0.3f;  ///< r, fraction of the map's side
+    Reach reach = Reach::map;
     Weight weight = Weight::unbiased;
     Rotation rotation = Rotation::none;
     Near nearField = Near::quad;
@@ -37,6 +39,8 @@ class RsmGather {
     float fitDistance = 8.0f;  ///< maximum distance, in the same unit
     bool showRefused = false;  ///< paint rejected pixels red
     bool interpolates() const { return interpolate && lowResolution > 1; }
+    float farthest() const;  ///< of a sample, fraction of the map's side
+    double exponent() const;  ///< samples lie at farthest() xi1^exponent
   };
   using Light = ReflectiveShadowMap::Light;
   struct Map {
@@ -82,8 +86,10 @@ class RsmGather {
   std::vector<InspectedPart> inspect(gl::ProgramLibrary& programs, const Inputs& inputs, glm::ivec2 pixel) const;
 
   // Shared by the passes and the tests' probe.
-  /// (xi1 sin 2 pi xi2, xi1 cos 2 pi xi2, xi1 or xi1^2, 0): a Hammersley set, shifted on the torus by `shift`.
-  static std::vector<glm::vec4> pattern(int samples, Weight weight, const glm::dvec2& shift = glm::dvec2(0.0));
+  /// (d sin 2 pi xi2, d cos 2 pi xi2, weight, 0), d = xi1^exponent: a Hammersley set, shifted on the torus by `shift`.
+  /// With the exponent 1 the weight is xi1 or xi1^2.
+  static std::vector<glm::vec4> pattern(int samples, Weight weight, const glm::dvec2& shift = glm::dvec2(0.0),
+                                        double exponent = 1.0);
   static gl::ShaderFlags flags(const Settings& settings, Light light);
   /// adds: to the present content of the image.
   static void bindMap(const gl::Program& program, const Settings& settings, const Map& map, bool adds = false);
@@ -105,6 +111,7 @@ class RsmGather {
 };
 
 constexpr std::array<std::string_view, 2> namesOf(RsmGather::Weight) { return {"unbiased", "published"}; }
+constexpr std::array<std::string_view, 2> namesOf(RsmGather::Reach) { return {"map", "radius"}; }
 constexpr std::array<std::string_view, 2> namesOf(RsmGather::Rotation) { return {"none", "noise"}; }
 constexpr std::array<std::string_view, 4> namesOf(RsmGather::Near) { return {"none", "clamp", "disc", "quad"}; }
 

@@ -16,7 +16,10 @@ std::span<const Setting> rsmSettings() {
        rebuild, "", "", "maps"},
       {"rsm.samples", number(SETTING_FIELD(Gather, samples), 1, 65536), "samples", "of the map for a gathered point",
        "[Dachsbacher2005]"},
-      {"rsm.radius", number(SETTING_FIELD(Gather, radius), 1e-4, 2.0), "sides of the map", "reach of the gather",
+      {"rsm.radius", number(SETTING_FIELD(Gather, radius), 1e-4, 2.0), "sides of the map",
+       "within which samples are dense: rsm.reach", "[Dachsbacher2005]"},
+      {"rsm.reach", choice(SETTING_FIELD(Gather, reach)), "",
+       "map: half of the samples lie within rsm.radius, the others anywhere in the map; radius: all within",
        "[Dachsbacher2005]"},
       {"rsm.weight", choice(SETTING_FIELD(Gather, weight)), "", "of a sample: unbiased, xi; published, xi^2",
        "[Dachsbacher2005]"},
@@ -50,6 +53,11 @@ std::span<const Deviation> rsmDeviations() {
        [](const RenderSettings& s) { return s.of<Gather>().weight == RsmGather::Weight::published; },
        [](RenderSettings& s, bool on) {
          s.of<Gather>().weight = on ? RsmGather::Weight::published : RsmGather::Weight::unbiased;
+       }},
+      {"rsm.reach", "no light from beyond rsm.radius", DeviationSource::both,
+       [](const RenderSettings& s) { return s.of<Gather>().reach == RsmGather::Reach::radius; },
+       [](RenderSettings& s, bool on) {
+         s.of<Gather>().reach = on ? RsmGather::Reach::radius : RsmGather::Reach::map;
        }},
       {"rsm.unbounded", "1/d^4 without a bound beside a surfel", DeviationSource::both,
        [](const RenderSettings& s) { return s.of<Gather>().nearField == RsmGather::Near::none; },

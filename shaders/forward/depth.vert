@@ -1,5 +1,6 @@
 // Depth only, from the sun (shadow map) or from the camera (depth pre-pass, so that hidden surfaces are not shaded).
 #include "lib/frame.glsl"
+#include "lib/lamp_place.glsl"
 invariant gl_Position;  // the shading pass must compute exactly this depth
 layout(location = 0) in vec3 position;
 #if ALPHA_MASK
@@ -11,7 +12,7 @@ void main() {
 #if FROM_SUN
   gl_Position = frame.sunClipFromWorld * vec4(position, 1.0);
 #else
-  gl_Position = frame.clipFromWorld * vec4(position, 1.0);
+  gl_Position = drawnAt(position);
 #endif
 #if ALPHA_MASK
   vTexCoord = texCoord;

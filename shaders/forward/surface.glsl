@@ -40,8 +40,7 @@ layout(location = 0) out vec4 radiance;
 
 #if SPECULAR
 #include "lib/material_coat.glsl"
-#include "lib/ggx.glsl"
-#include "lib/tangent.glsl"
+#include "lib/coat_reflection.glsl"
 Coat coat;
 bool isCoated;
 #endif
@@ -54,19 +53,11 @@ bool isCoated;
 
 // BRDF value: reflected radiance per irradiance.
 vec3 reflection(vec3 albedo, vec3 normal, vec3 toCamera, vec3 toLight) {
-  vec3 reflected = albedo / kPi;
 #if SPECULAR
-  if (isCoated && coat.alpha > 0.0) {
-    vec3 t, b;
-    tangentFrame(normal, t, b);
-    vec3 o = vec3(dot(toCamera, t), dot(toCamera, b), dot(toCamera, normal)),
-         i = vec3(dot(toLight, t), dot(toLight, b), dot(toLight, normal));
-    float density, facets = ggxReflect(o, i, coat.alpha, density);
-    reflected *= coatTransmission(coat, o.z, i.z);
-    if (facets > 0.0) reflected += facets / i.z * coatFresnel(coat, max(dot(o, normalize(o + i)), 0.0));
-  }
+  return coatedReflection(coat, albedo, normal, toCamera, toLight);
+#else
+  return albedo / kPi;
 #endif
-  return reflected;
 }
 
 // Adds one term of the radiance; the inspected pixel also records it.

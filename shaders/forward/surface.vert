@@ -1,5 +1,6 @@
 // Transforms mesh vertices for the camera.
 #include "lib/frame.glsl"
+#include "lib/lamp_place.glsl"
 invariant gl_Position;
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec2 texCoord;
@@ -14,5 +15,5 @@ void main() {
   vNormal = normal;
   vTexCoord = texCoord;
   vTangentPlane = dot(normal, position);
-  gl_Position = frame.clipFromWorld * vec4(position, 1.0);
+  gl_Position = drawnAt(position);
 }

@@ -1,6 +1,6 @@
-// Direct irradiance at a point by shadow rays; see engine/radiosity/direct_rays.hpp. Storage block 1, texture units 60
-// and 61. Unoccluded irradiance from an emissive triangle is computed in closed form (radiosity/polygon.glsl). Its
-// visible fraction is the mean over points of the triangle, evenly distributed by area and weighted by their
+// Direct light at a point by shadow rays, reflected; see engine/radiosity/direct_rays.hpp. Storage block 1, texture
+// units 60 and 61. Unoccluded irradiance from an emissive triangle is computed in closed form (radiosity/polygon.glsl).
+// Its visible fraction is the mean over points of the triangle, evenly distributed by area and weighted by their
 // contribution, so without a blocker there is no noise.
 #include "lib/spot.glsl"
 #include "lib/tangent.glsl"
@@ -29,12 +29,20 @@ vec2 directShift(uvec2 v) {
   return vec2(v >> 8) * 5.9604645e-8;
 }
 
+struct DirectReflection {
+  vec3 base;  // albedo below the coat
+  vec3 matt;  // radiance per irradiance of light from all sides
+};
+
 // position: of the pixel; normal: for shading; face: of the geometry; both unit, on the front side. plane: distance of
 // the face's plane from the origin along `face`; magnitude: the largest coordinate of the triangle in the ray caster.
-// reflection: radiance per irradiance, for the inspected pixel.
 // A position interpolated over a large face is off by more than its own rounding, so it is projected back onto the
 // plane. Rays then start beyond the rounding error of that triangle, as a path's do.
-vec3 directIrradiance(vec3 position, vec3 normal, vec3 face, float plane, float magnitude, vec3 reflection) {
+vec3 directRadiance(vec3 position, vec3 normal, vec3 face, float plane, float magnitude,
+#if SPECULAR
+                    Coat coat,
+#endif
+                    vec3 toCamera, DirectReflection reflected) {
   vec3 p = position - directOrigin.xyz - face * (dot(position, face) - plane), start = offsetRay(p, face, magnitude);
   vec3 u = normalize(abs(normal.x) > 0.5 ? vec3(normal.y, -normal.x, 0.0) : vec3(0.0, normal.z, -normal.y)),
        v = cross(normal, u);
@@ -91,10 +99,16 @@ vec3 directIrradiance(vec3 position, vec3 normal, vec3 face, float plane, float 
       all += weight;
       if (weight > 0.0 && !anyHitToLamp(ray, kNoHit)) open += weight;
     }
-    vec3 arriving = all > 0.0 ? unblocked * (open / all) : vec3(0.0);
-    sum += arriving;
+    vec3 perIrradiance = reflected.matt;
+#if SPECULAR
+    if (kind > 0)
+      perIrradiance = coatedReflection(coat, reflected.base, normal, toCamera,
+                                       normalize(kind == 1 ? light.a.xyz : light.a.xyz - p));
+#endif
+    vec3 leaving = all > 0.0 ? perIrradiance * unblocked * (open / all) : vec3(0.0);
+    sum += leaving;
 #if INSPECTED
-    record(INSPECTED_LIGHTS + i, vec4(reflection * arriving, 0.0));
+    record(INSPECTED_LIGHTS + i, vec4(leaving, 0.0));
 #endif
   }
   return sum;

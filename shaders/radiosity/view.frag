@@ -2,10 +2,11 @@
 // units. A back without a patch of its own is black.
 #include "lib/frame.glsl"
 #include "lib/material.glsl"
+const float kPi = 3.14159265358979;
 #if SPECULAR
 #include "lib/material_coat.glsl"
+#include "lib/coat_reflection.glsl"
 #endif
-const float kPi = 3.14159265358979;
 in vec3 vPosition;
 in vec3 vIrradiance;
 in vec2 vTexCoord;
@@ -27,8 +28,17 @@ layout(location = 0) out vec4 radiance;
 
 void main() {
   vec3 albedo = materialAlbedo(vTexCoord);
+#if DIRECT_RAYS
+  DirectReflection reflected = DirectReflection(albedo, albedo / kPi);
+#endif
 #if SPECULAR
-  albedo = wholeReflectance(materialCoat(vTexCoord), albedo);
+  // Light of patches and emissive surfaces is reflected as if matt, that of lamps as it is.
+  Coat coat = materialCoat(vTexCoord);
+  albedo = wholeReflectance(coat, albedo);
+#if DIRECT_RAYS
+  reflected.matt = albedo / kPi;
+  if (!(coat.alpha > 0.0)) reflected.base = albedo;
+#endif
 #endif
 #if EMISSION
   vec3 emitted = materialEmitted(vTexCoord);
@@ -43,11 +53,15 @@ void main() {
   if (materialCutOut(vTexCoord)) discard;
   vec3 result = vec3(0.0);
   if (gl_FrontFacing) {
-    vec3 irradiance = vIrradiance;
+    result = albedo * vIrradiance / kPi;
 #if DIRECT_RAYS
-    irradiance += directIrradiance(vPosition, normal, vFace, vFacePlace.x, vFacePlace.y, albedo / kPi);
+    vec3 toCamera = normalize(eyeOf(vPosition) - vPosition);
+    result += directRadiance(vPosition, normal, vFace, vFacePlace.x, vFacePlace.y,
+#if SPECULAR
+                             coat,
 #endif
-    result = albedo * irradiance / kPi;
+                             toCamera, reflected);
+#endif
 #if EMISSION
     result += emitted;
 #endif

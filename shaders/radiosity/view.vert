@@ -1,6 +1,7 @@
 // A patch's corner seen by the camera, with the irradiance there. litScene() lists three vertices per patch, so
 // gl_VertexID is 3 * patch + corner.
 #include "lib/frame.glsl"
+#include "lib/lamp_place.glsl"
 invariant gl_Position;
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec2 texCoord;
@@ -36,5 +37,5 @@ void main() {
   vFacePlace = vec2(faces[face + 3], faces[face + 4]);
   vNormal = normal;
 #endif
-  gl_Position = frame.clipFromWorld * vec4(position, 1.0);
+  gl_Position = drawnAt(position);
 }

@@ -1,12 +1,13 @@
 // Irradiance at a point from the reflective shadow map, sampled around the point's projection (s,t) at
 // (s + r xi1 sin 2 pi xi2, t + r xi1 cos 2 pi xi2) [Dachsbacher2005 sec 4.1].
 // The sampling density per texel is 1 / (2 pi R^2 xi1), R = r in texels, so the unbiased estimate of the sum over all
-// texels within R is sum_i E_i xi1_i 2 pi R^2 / N. The published weight has xi1^2 in place of xi1. Lights are gathered
-// one after the other, one dispatch each: `adds` is 1 from the second on.
+// texels within R is sum_i E_i xi1_i 2 pi R^2 / N. The published weight has xi1^2 in place of xi1. With WHOLE_MAP xi1^p
+// replaces xi1, and the weight is p xi1^(2p-1) (engine/rsm/rsm_gather.cpp). Lights are gathered one after the other,
+// one dispatch each: `adds` is 1 from the second on.
 #include "rsm/transfer.glsl"
-layout(std430, binding = 0) readonly buffer Pattern { vec4 pattern[]; };  // xi1 sin, xi1 cos, weight, unused
+layout(std430, binding = 0) readonly buffer Pattern { vec4 pattern[]; };  // sine and cosine times distance; weight; 0
 uniform int adds;
-uniform float gatherRadius;  // r, as a fraction of the map's width
+uniform float gatherRadius;  // r, of the farthest sample, as a fraction of the map's width
 #if INSPECTED
 // For the inspected pixel (rsm/inspect.comp): receives sample i's contribution to the irradiance, and its surfel.
 void tell(int i, RsmSurfel surfel, ivec3 texel, vec3 irradiance);
@@ -44,6 +45,9 @@ vec3 gatherIrradiance(vec3 position, vec3 normal, float rotation) {
 vec3 gatherIrradiance(vec3 position, vec3 normal, float rotation) {
   ivec2 size = rsmSize();
   vec2 centre = rsmProject(position) * vec2(size);
+#if WHOLE_MAP
+  centre = clamp(centre, vec2(0.0), vec2(size));  // so that the samples reach all of it
+#endif
   vec2 radius = gatherRadius * vec2(size);
   float c = cos(rotation), s = sin(rotation);
   vec3 sum = vec3(0.0);

@@ -1495,7 +1495,7 @@ TEST_F(IrradianceCacheGl, AreDrawnAsDisksWhereTheyAre) {
   Renderer renderer(context(), library(), scene, s);
   renderer.renderToTheEnd(kInside);
   const std::vector<IrradianceCache::Shown> records = cacheOf(renderer.technique())->shown();
-  ASSERT_GT(records.size(), 100u);
+  ASSERT_GT(records.size(), 50u);
   const glm::dvec3 irradiance = kPi * emission / (1.0 - albedo);
   for (const IrradianceCache::Shown& record : records) {
     const glm::vec3 place = glm::abs(record.position + glm::vec3(renderer.origin()));
@@ -1549,7 +1549,7 @@ TEST_F(IrradianceCacheGl, AreDrawnAsDisksWhereTheyAre) {
         if (x >= 0 && y >= 0 && x < 256 && y < 256)
           near[static_cast<std::size_t>(y) * 256 + static_cast<std::size_t>(x)] = true;
   }
-  EXPECT_GT(drawn, 50);
+  EXPECT_GT(drawn, 40);
   EXPECT_LE(dark, drawn / 20) << "of " << drawn << ": below another one's rim";
   int stray = 0, lit = 0;
   for (std::size_t i = 0; i < texels.size(); ++i) {

@@ -161,11 +161,11 @@ class LpvDeviations : public test::SharedProgramsTest {
 // ----------------------------------------------------------------------------------------------------------
 
 /// The deviations that have a test here.
-const std::array kTested{"rsm.flux-cosine",      "rsm.gather-weight",    "rsm.unbounded",      "lpv.flux-units",
-                         "lpv.sum-cascades",     "lpv.unjoined",         "lpv.truncate",       "lpv.first-cell",
-                         "lpv.side-directions",  "lpv.side-solid-angle", "lpv.four-pi-kernel", "lpv.fewer-steps",
-                         "lpv.block-first-step", "lpv.surfel-area",      "lpv.unwindowed",     "lpv.blocking-direction",
-                         "lpv.half-grids"};
+const std::array kTested{
+    "rsm.flux-cosine",      "rsm.gather-weight",      "rsm.reach",       "rsm.unbounded",        "lpv.flux-units",
+    "lpv.sum-cascades",     "lpv.unjoined",           "lpv.truncate",    "lpv.first-cell",       "lpv.side-directions",
+    "lpv.side-solid-angle", "lpv.four-pi-kernel",     "lpv.fewer-steps", "lpv.block-first-step", "lpv.surfel-area",
+    "lpv.unwindowed",       "lpv.blocking-direction", "lpv.half-grids"};
 
 TEST_F(LpvDeviations, EachOneHasATestHere) {
   std::size_t others = 0;
@@ -690,7 +690,7 @@ class RsmGatherDeviations : public LpvDeviations {
     frame.sunDirection = glm::vec3(map.direction);
     const gl::Buffer constants("frame", sizeof frame, &frame, gl::Usage::staticDraw);
     const std::array probes{glm::vec4(glm::vec3(position), 0.0f), glm::vec4(glm::vec3(normal), 0.0f)};
-    const std::vector<glm::vec4> pattern = RsmGather::pattern(s.samples, s.weight);
+    const std::vector<glm::vec4> pattern = RsmGather::pattern(s.samples, s.weight, glm::dvec2(0.0), s.exponent());
     const gl::Buffer in("probes", sizeof probes, probes.data(), gl::Usage::staticDraw),
         out("irradiances", sizeof(glm::vec4), nullptr, gl::Usage::streamRead);
     const gl::Buffer samples("pattern", pattern.size() * sizeof(glm::vec4), pattern.data(), gl::Usage::staticDraw);
@@ -725,12 +725,26 @@ TEST_F(RsmGatherDeviations, GatherWeight) {
   RsmGather::Settings right = with("").of<RsmGather::Settings>();
   right.samples = 4096;
   right.nearField = RsmGather::Near::none;
+  right.reach = RsmGather::Reach::radius;
   RsmGather::Settings published = with("rsm.gather-weight").of<RsmGather::Settings>();
   published.samples = right.samples;
   published.nearField = right.nearField;
+  published.reach = right.reach;
   const double exact = kPi * std::pow(0.3 * 64.0, 2.0) / (kPi * 4.0);
   EXPECT_NEAR(gathered(map, right, {0, 0, 2}, {0, 0, -1}) / exact, 1.0, 1e-3);
   EXPECT_NEAR(gathered(map, published, {0, 0, 2}, {0, 0, -1}) / exact, 2.0 / 3.0, 1e-3);
+}
+
+TEST_F(RsmGatherDeviations, Reach) {
+  // All 64 x 64 texels of the map are one, above which the point is; within r = 0.3 there are pi (0.3 * 64)^2.
+  const reference::RsmMap map = mapOfOnePlace(64);
+  const auto relative = [&](RsmGather::Settings s) {
+    s.samples = 16384;
+    s.nearField = RsmGather::Near::none;
+    return gathered(map, s, {0, 0, 2}, {0, 0, -1}) / (64.0 * 64.0 / (kPi * 4.0));
+  };
+  EXPECT_NEAR(relative(with("").of<RsmGather::Settings>()), 1.0, 0.01);
+  EXPECT_NEAR(relative(with("rsm.reach").of<RsmGather::Settings>()), kPi * 0.3 * 0.3, 1e-3);
 }
 
 TEST_F(RsmGatherDeviations, Unbounded) {
@@ -740,6 +754,7 @@ TEST_F(RsmGatherDeviations, Unbounded) {
   RsmGather::Settings right = with("").of<RsmGather::Settings>(),
                       published = with("rsm.unbounded").of<RsmGather::Settings>();
   right.radius = published.radius = 0.5f;
+  right.reach = published.reach = RsmGather::Reach::radius;
   const double bounded = gathered(map, right, {0, 0, 0.1}, {0, 0, -1}) / (kPi / 4.0);
   EXPECT_GT(bounded, 0.9);
   EXPECT_LT(bounded, 1.0);

@@ -216,6 +216,29 @@ TEST_F(ReflectionsTest, ATechniqueWithoutThemNamesTheMaterials) {
   EXPECT_FALSE(warned("irradiance-cache"));
 }
 
+TEST_F(ReflectionsTest, CausticsThatAreLeftOutAreSaid) {
+  SceneBuilder builder;
+  builder.plate({0, 0, 0}, {0, 0, 4}, {4, 0, 0}, builder.material(glm::vec3(0.5f)));
+  const int pane = builder.material(glm::vec3(0.0f));
+  builder.materialAt(pane).name = "pane";
+  builder.materialAt(pane).bsdf = Bsdf::dielectric;
+  builder.plate({0, 1, 0}, {0, 0, 4}, {4, 0, 0}, pane);
+  Scene& scene = builder.scene();
+  scene.cameras = {test::lookingAt({0, 0.5, 2}, {0, 0, 0})};
+  const auto said = [&] {
+    clearLoggedWarnings();
+    const Renderer renderer(context(), library(), scene, settings("irradiance-cache"));
+    return std::ranges::any_of(loggedWarnings(), [](const std::string& w) {
+      return w.find("caustics") != std::string::npos && w.find("'pane'") != std::string::npos;
+    });
+  };
+  scene.sun = DirectionalLight{{0.0, -1.0, 0.0}, glm::vec3(1.0f)};
+  EXPECT_TRUE(said());
+  scene.sun.reset();
+  scene.environment = Environment{glm::vec3(1.0f), {}, 0.0};
+  EXPECT_FALSE(said());
+}
+
 // --------------------------------------------------------------------------------------------------------------- lamps
 
 class ManyLamps : public ReflectionsTest {

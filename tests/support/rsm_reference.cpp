@@ -89,7 +89,9 @@ glm::dvec3 bruteForceIrradiance(const RsmMap& map, const glm::dvec3& x, const gl
 Gathered gather(const RsmMap& map, std::span<const glm::vec4> pattern, const glm::dvec3& x, const glm::dvec3& n,
                 double rotation, const GatherOptions& options) {
   Gathered result;
-  const glm::dvec2 size(map.size), centre = map.project(x) * size;
+  const glm::dvec2 size(map.size);
+  glm::dvec2 centre = map.project(x) * size;
+  if (options.wholeMap) centre = glm::clamp(centre, glm::dvec2(0.0), size);
   for (const glm::vec4& sample : pattern) {
     const double sine = static_cast<double>(sample.x), cosine = static_cast<double>(sample.y);
     const glm::dvec2 turned(std::cos(rotation) * sine + std::sin(rotation) * cosine,

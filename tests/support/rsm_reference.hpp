@@ -46,6 +46,7 @@ struct GatherOptions {
   double radius = 0.3;  ///< fraction of the map's sides
   NearField nearField = NearField::quad;
   double minimumDistance = 0.0;  ///< NearField::clamp
+  bool wholeMap = false;  ///< a point beside the map samples from the map's border
 };
 
 /// Form factor from a point at the origin with a unit normal to a polygon, cut at the point's horizon.

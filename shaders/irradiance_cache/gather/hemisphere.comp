@@ -1,6 +1,6 @@
 // What surrounds a record: RAYS cosine-distributed rays of each lane through the scene's hierarchy. Each brings, over
 // the number of rays,
-//   pi L of the sky where it meets nothing;
+//   pi L of the sky where it meets nothing; with a picture, as many rays to its texels share in that;
 //   pi L of an emissive surface, weighted as in gather.comp (SHARED_WITH_RAYS), which finds the rest;
 //   albedo E of any surface, E being the irradiance kept at the bounces' point near the hit.
 // The rays' shares add up to 1 at most, so light that bounces on and on never grows.
@@ -72,27 +72,40 @@ uint pointOf(int face, ivec3 cell, vec3 position, vec3 normal) {
   return nearest;
 }
 
+// Whether nothing stands between a surface and a point in its plane, such as the wall between two rooms with one floor:
+// straight along the surface or, where that is curved, above it.
+bool isBeside(Surface at, uint point) {
+  const float kClear = 0.001, kAbove = 0.1;  // cells
+  vec3 from = offsetRay(at.position, at.geometricNormal, at.magnitude),
+       to = texelFetch(bouncePlaces, int(point) - 1).xyz + kClear * bounceCell * at.normal,
+       lift = kAbove * bounceCell * at.normal;
+  if (!anyHit(Ray(from, 0.0, to - from, 1.0), kNoHit)) return true;
+  return !anyHit(Ray(from, 0.0, lift, 1.0), kNoHit) && !anyHit(Ray(to, 0.0, lift, 1.0), kNoHit) &&
+         !anyHit(Ray(from + lift, 0.0, to - from, 1.0), kNoHit);
+}
+
 // A point near a surface's, drawn as often as a trilinear lookup among those of the faces that the normal leans to
-// would weigh it. 0: none.
-uint pointNear(vec3 position, vec3 normal, vec4 xi) {
-  vec3 lean = normal * normal, inCells = (position - bounceMinimum) / bounceCell;
-  int axis = xi.w < lean.x ? 0 : xi.w < lean.x + lean.y ? 1 : 2;
-  int face = faceOf(axis, normal[axis]);
+// would weigh it; of these, the first that nothing stands before. 0: none.
+uint pointNear(Surface at, vec4 xi) {
+  const int kPlaces = 9;
+  vec3 normal = at.normal, lean = normal * normal, inCells = (at.position - bounceMinimum) / bounceCell;
   ivec3 own = clampedInt(floor(inCells), ivec3(-2), bounceCells + 1);  // more than a cell outside remains outside
-  uint point = pointOf(face, clampedInt(floor(inCells + xi.xyz - 0.5), ivec3(-2), bounceCells + 1), position, normal);
-  if (point == 0u) point = pointOf(face, own, position, normal);
-  if (point != 0u) return point;
+  int drawn = xi.w < lean.x ? 0 : xi.w < lean.x + lean.y ? 1 : 2;
   // The surface was entered for the axis that it leans to most, maybe on the other side of a cell's border. Or its own
   // point lies in a gap: then a neighbour stands for it.
-  axis = lean.x > max(lean.y, lean.z) ? 0 : lean.y > lean.z ? 1 : 2;
-  face = faceOf(axis, normal[axis]);
-  point = pointOf(face, own, position, normal);
-  for (int i = 0; i < 6 && point == 0u; ++i) {
-    ivec3 step = ivec3(0);
-    step[(axis + i / 2) % 3] = 1 - 2 * (i & 1);
-    point = pointOf(face, own + step, position, normal);
+  int most = lean.x > max(lean.y, lean.z) ? 0 : lean.y > lean.z ? 1 : 2;
+  uint first = 0u;
+  for (int i = 0; i < kPlaces; ++i) {
+    ivec3 cell = own;
+    if (i == 0) cell = clampedInt(floor(inCells + xi.xyz - 0.5), ivec3(-2), bounceCells + 1);
+    if (i > 2) cell[(most + (i - 3) / 2) % 3] += 1 - 2 * ((i - 3) & 1);
+    int axis = i < 2 ? drawn : most;
+    uint point = pointOf(faceOf(axis, normal[axis]), cell, at.position, normal);
+    if (point == 0u || point == first) continue;
+    if (isBeside(at, point)) return point;
+    if (first == 0u) first = point;
   }
-  return point;
+  return 0u;
 }
 #endif
 
@@ -107,10 +120,28 @@ vec3 emissionNear(Surface at, Hit hit, float cosine, vec3 direction) {
 }
 #endif
 
+#if ENVIRONMENT_PICTURE && OWN
+// Light of a texel of the sky, drawn by its power, as far as these rays count for it beside those that go everywhere:
+// the balance heuristic [Veach1997].
+vec3 skyOfTexel(Surface surface, uint triangle, PathNumbers numbers) {
+  vec3 radiance;
+  float pdf;
+  vec3 direction = environmentSample(randomPair(numbers, 2u, kPurposeScatter),
+                                     randomWords(numbers, 2u, kPurposePick).xy, radiance, pdf);
+  float cosine = dot(direction, surface.normal);
+  if (!(cosine > 0.0) || !(pdf > 0.0) || !(dot(direction, surface.geometricNormal) > 0.0)) return vec3(0.0);
+  Ray ray = Ray(offsetRay(surface.position, surface.geometricNormal, surface.magnitude), 0.0, direction, 3e38);
+  return anyHit(ray, triangle) ? vec3(0.0) : radiance * (cosine / (cosine / kPi + pdf));
+}
+#endif
+
 vec3 lookAround(CacheRecord record, uint index, uint ray) {
   Surface surface = surfaceOf(record);
   PathNumbers numbers = PathNumbers(pcg4d(uvec4(record.cell)).x, ray, tracer.seed);
   vec3 direction = cosineSample(surface.normal, randomPair(numbers, 1u, kPurposeScatter)), sum = vec3(0.0);
+#if ENVIRONMENT_PICTURE && OWN
+  sum = skyOfTexel(surface, record.triangle, numbers);
+#endif
 #if LINKS
   uint link = 3u * (index * uint(CACHE_LANES) + ray);
   links[link] = 0u;
@@ -122,7 +153,12 @@ vec3 lookAround(CacheRecord record, uint index, uint ray) {
       record.triangle);
   if (hit.triangle == kNoHit) {
 #if ENVIRONMENT && OWN
-    sum = kPi * environmentRadiance(direction);
+    vec3 sky = kPi * environmentRadiance(direction);
+#if ENVIRONMENT_PICTURE
+    float density = dot(direction, surface.normal) / kPi;
+    sky *= density / (density + environmentPdf(direction));
+#endif
+    sum += sky;
 #endif
     return sum;
   }
@@ -131,8 +167,8 @@ vec3 lookAround(CacheRecord record, uint index, uint ray) {
   sum += kPi * emissionNear(at, hit, dot(direction, surface.normal), direction);
 #endif
 #if BOUNCED
-  uint point = pointNear(at.position, at.normal, vec4(unitFloat(randomWords(numbers, 1u, kPurposePick).xy),
-                                                      unitFloat(randomWords(numbers, 1u, kPurposeChoice).xy)));
+  uint point = pointNear(at, vec4(unitFloat(randomWords(numbers, 1u, kPurposePick).xy),
+                                                unitFloat(randomWords(numbers, 1u, kPurposeChoice).xy)));
   vec3 albedo = min(wholeAlbedoAt(at), vec3(1.0));
 #if LINKS
   // Rounded down: no surface reflects more than it does.
