@@ -1,9 +1,11 @@
 // Scenes that move, in every technique: a renderer that follows the scene draws what a new one would, whatever it has
 // drawn before; lights and surfaces are where the time says.
 #include "base/data.hpp"
+#include "irradiance_cache/irradiance_cache_frame.hpp"
 #include "render/renderer.hpp"
 #include "render/techniques.hpp"
 #include "scene/motion.hpp"
+#include "shared/irradiance_cache.h"
 #include "support/gl_fixture.hpp"
 #include "support/temp_folder.hpp"
 
@@ -172,6 +174,117 @@ TEST_F(MotionGl, ALiveFrameAfterACutShowsTheLightOfItsTime) {
   live.render(camera);
   const Image found = live.readRadiance(), right = anew(still, settings);
   EXPECT_LT(wrongShare(found, right), 0.04);
+}
+
+// A closed room of 2 units with a lamp that moves, an emissive ceiling, and a card that moves by the last key.
+class KeptHitsGl : public MotionGl {
+ protected:
+  std::filesystem::path room() {
+    folder_.write("m.obj", R"(mtllib m.mtl
+v -1 0 -1
+v 1 0 -1
+v 1 0 1
+v -1 0 1
+v -1 2 -1
+v 1 2 -1
+v 1 2 1
+v -1 2 1
+v -0.9 0.3 -0.2
+v -0.7 0.3 -0.2
+v -0.7 0.3 0.2
+v -0.9 0.3 0.2
+usemtl white
+o room
+f 4 3 2 1
+f 1 2 6 5
+f 4 8 7 3
+f 1 5 8 4
+f 2 3 7 6
+usemtl lamp
+o ceiling
+f 5 6 7 8
+usemtl white
+o card
+f 12 11 10 9
+)");
+    folder_.write("m.mtl", "newmtl white\nKd 0.5 0.5 0.5\nnewmtl lamp\nKd 0 0 0\nKe 0.2 0.2 0.2\n");
+    return folder_.write("s.json", R"({"model": "m.obj", "environment": null, "sun": null,
+        "camera": {"position": [0, 1, 0.9], "direction": [0, -0.2, -1], "up": [0, 1, 0], "fov": 90},
+        "points": [{"position": {"times": [0, 8], "values": [[-0.5, 1, 0], [0.5, 1, 0]]}, "intensity": [1, 1, 1]}],
+        "objects": {"card": {"translation": {"times": [0, 8, 9], "values": [[0, 0, 0], [0, 0, 0], [0.3, 0, 0]]}}}})");
+  }
+  RenderSettings settings() const {
+    RenderSettings result = settingsOf("irradiance-cache");
+    result.of<IrradianceCacheSettings>().cascades.cells = 8;
+    return result;
+  }
+  /// Draws one frame at a time and returns how many paths were traced again.
+  std::uint64_t tracedAt(Renderer& live, Scene& scene, double seconds) {
+    EXPECT_TRUE(live.follow(context(), programs(), scene, poseAt(scene, seconds)));
+    live.render(scene.cameras.front());
+    live.drain();
+    return cacheOf(live.technique())->counts().traced;
+  }
+  test::TempFolder folder_;
+};
+
+TEST_F(KeptHitsGl, RelightRecordsWhereALampAloneMoves) {
+  const auto file = room();
+  Scene scene = loadScene(file);
+  Renderer live(context(), programs(), scene, settings());
+  live.renderToTheEnd(scene.cameras.front());
+  const Image before = live.readRadiance();
+  EXPECT_GT(tracedAt(live, scene, 1.0), 0u);
+  for (const double t : {1.5, 2.0, 2.5, 3.0, 4.0, 5.0}) tracedAt(live, scene, t);
+  for (const double t : {6.0, 7.0}) {
+    EXPECT_EQ(tracedAt(live, scene, t), 0u) << t;  // a record stands for all that paths hit
+    const Image found = live.readRadiance(), right = anew(loadScene(file, t), settings());
+    EXPECT_LT(wrongShare(found, right), 0.04) << t;
+    EXPECT_GT(wrongShare(before, right), 0.2) << t;
+  }
+}
+
+TEST_F(KeptHitsGl, AreTracedAgainWhereTheyMeetWhatMoves) {
+  const auto file = room();
+  Scene scene = loadScene(file);
+  Renderer live(context(), programs(), scene, settings());
+  live.renderToTheEnd(scene.cameras.front());
+  for (const double t : {7.0, 7.2, 7.4, 7.6, 7.8, 8.0}) tracedAt(live, scene, t);
+  ASSERT_EQ(cacheOf(live.technique())->counts().traced, 0u);
+  for (const double t : {8.3, 8.6, 9.0}) {
+    const std::uint64_t traced = tracedAt(live, scene, t),
+                        all = cacheOf(live.technique())->counts().records * CACHE_HITS;
+    EXPECT_GT(traced, all / 100) << t;
+    EXPECT_LT(traced, all / 2) << t;
+    EXPECT_LT(wrongShare(live.readRadiance(), anew(loadScene(file, t), settings())), 0.04) << t;
+  }
+}
+
+TEST_F(KeptHitsGl, WaitWhereTheBudgetIsSpent) {
+  const auto file = room();
+  Scene scene = loadScene(file);
+  RenderSettings budget = settings();
+  budget.of<IrradianceCacheSettings>().tracedPaths = 100;
+  Renderer live(context(), programs(), scene, budget);
+  live.renderToTheEnd(scene.cameras.front());
+  /// Frames in which the lamp alone moves, until no path waits.
+  const auto framesToRest = [&](double seconds) {
+    int frames = 0;
+    do
+      (*scene.motion)[SceneMotion::Part::points] = [frames](Scene& posed, double) {
+        posed.points[0].position.x = frames % 2 == 0 ? 0.4 : 0.5;
+      };
+    while (tracedAt(live, scene, seconds) > 0 && ++frames < 200);
+    return frames;
+  };
+  EXPECT_LT(framesToRest(7.9), 200);
+  tracedAt(live, scene, 9.0);  // the card moves
+  (*scene.motion)[SceneMotion::Part::points] = [](Scene& posed, double) { posed.points[0].position.x = 0.3; };
+  const std::uint64_t waiting = tracedAt(live, scene, 9.0);
+  ASSERT_GT(waiting, 400u);
+  const int frames = framesToRest(9.0);
+  EXPECT_GT(frames, static_cast<int>(waiting / 200));
+  EXPECT_LT(frames, 200);
 }
 
 }  // namespace
