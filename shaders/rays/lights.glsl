@@ -95,6 +95,7 @@ bool sampleOf(PathLight source, vec3 position, vec2 xi, uvec4 words, out LightSa
 // words: select the light.
 bool sampleLight(vec3 position, vec2 xi, uvec4 words, out LightSample light) {
   pickedLight = pick(words);
-  return sampleOf(lights[pickedLight], position, xi, words, light);
+  PathLight source = lights[pickedLight];
+  return sampleOf(source, position, xi, words, light);
 }
 #endif
