@@ -182,34 +182,13 @@ class KeptHitsGl : public MotionGl {
  protected:
   /// The card's half size and its height; strengths of ceiling and lamp.
   std::filesystem::path room(double half, double height, double emission, double intensity) {
-    folder_.write("m.obj", fmt::format(R"(mtllib m.mtl
-v -1 0 -1
-v 1 0 -1
-v 1 0 1
-v -1 0 1
-v -1 2 -1
-v 1 2 -1
-v 1 2 1
-v -1 2 1
-v {0} {2} {0}
-v {1} {2} {0}
-v {1} {2} {1}
-v {0} {2} {1}
-usemtl white
-o room
-f 4 3 2 1
-f 1 2 6 5
-f 4 8 7 3
-f 1 5 8 4
-f 2 3 7 6
-usemtl lamp
-o ceiling
-f 5 6 7 8
-usemtl white
-o card
-f 12 11 10 9
-)",
-                                       -half, half, height));
+    std::string model = "mtllib m.mtl\n";
+    for (int k = 0; k < 8; ++k) model += fmt::format("v {} {} {}\n", k & 1 ? 1 : -1, k & 2 ? 2 : 0, k & 4 ? 1 : -1);
+    for (int k = 0; k < 4; ++k)
+      model += fmt::format("v {} {} {}\n", k == 1 || k == 2 ? half : -half, height, k < 2 ? -half : half);
+    folder_.write("m.obj", model +
+                               "usemtl white\no room\nf 5 6 2 1\nf 1 2 4 3\nf 5 7 8 6\nf 1 3 7 5\nf 2 6 8 4\n"
+                               "usemtl lamp\no ceiling\nf 3 4 8 7\nusemtl white\no card\nf 12 11 10 9\n");
     folder_.write("m.mtl",
                   fmt::format("newmtl white\nKd 0.5 0.5 0.5\nnewmtl lamp\nKd 0 0 0\nKe {0} {0} {0}\n", emission));
     const std::string lamp = fmt::format(R"("intensity": [{0}, {0}, {0}])", intensity);
