@@ -464,7 +464,7 @@ void addLongRuns(std::vector<StabilityCase>& cases) {
     add("pictures of the last loop unlike those of the first", [](const LongRun& r) {
       return Measurement{0.0, r.otherFrames, 0.0};
     });
-    // A leak of one in each loop would be 99. Fewer are no leak: 2 to 19 fewer were seen after other techniques' runs.
+    // A leak of one in each loop would be 99.
     add("GL objects more than after the first loop", [](const LongRun& r) {
       return Measurement{0.5 * kFrames / kLoop, r.moreObjects, 0.0, Rule::atMost};
     });

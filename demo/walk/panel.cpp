@@ -320,6 +320,10 @@ void showCompare(Ui& ui, WalkState& s) {
       "Share of a frame's time for the path tracer while the picture is still being computed; on a still view it uses "
       "all idle time.");
   if (!s.liveReferenceOn) return;
+  if (s.timeRuns()) {
+    line("reference: moving; P holds the time");
+    return;
+  }
   if (!s.reference || s.reference->samples() == 0) {
     line("the reference: when the camera rests");
     return;

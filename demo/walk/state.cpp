@@ -1,6 +1,7 @@
 #include "walk/state.hpp"
 
 #include "base/provenance.hpp"
+#include "scene/motion.hpp"
 #include "shared/shell.hpp"
 
 #include <fmt/format.h>
@@ -19,6 +20,10 @@ bool sameLamps(const std::vector<Lamp>& a, const std::vector<Lamp>& b) {
 }
 
 }  // namespace
+
+bool WalkState::timeRuns() const {
+  return scene->motion && !time.held && (time.loops || time.seconds < scene->motion->end);
+}
 
 LightState lightsOf(const WalkState& state) {
   const Scene& scene = *state.scene;

@@ -91,6 +91,7 @@ struct WalkState {
   std::vector<Material> materialsAsLoaded;
 
   TimeState time;
+  bool timeRuns() const;  ///< and with it the scene: no reference is one of now
 
   // Camera
   PathState path;

@@ -947,8 +947,8 @@ bool WalkWindow::rests() const {
   const bool measures = !options_.common.json.empty() || options_.frames > 0;
   if (player_ || measures || state_.drawsAtRest || host_.kind() != HostKind::window) return false;
   const bool isStill = still_ > kStillFrames && quiet_ > kStillFrames && allSettled();
-  const bool moves = (state_.path.follows && !state_.path.paused) || (state_.scene->motion && !state_.time.held) ||
-                     input_.move != glm::dvec3(0.0);
+  const bool moves =
+      (state_.path.follows && !state_.path.paused) || state_.timeRuns() || input_.move != glm::dvec3(0.0);
   const bool works = state_.liveReferenceOn || state_.autoExposure || recorder_.isRecording() || state_.records;
   const bool speaks = state_.hint || (!state_.messages.empty() && state_.messageAge < kMessageSeconds);
   return isStill && !moves && !works && !speaks;
@@ -1071,8 +1071,9 @@ nlohmann::ordered_json WalkWindow::toJson() const {
                          {"seconds", state_.reference->seconds()},
                          {"seconds_in_frames", reference_.time().spent()},
                          {"seconds_of_frames", reference_.time().rest()},
-                         {"longest_in_a_frame", reference_.time().longest()}};
-    for (std::size_t i = 0; i < 2; ++i)
+                         {"longest_in_a_frame", reference_.time().longest()},
+                         {"moving", state_.timeRuns()}};
+    for (std::size_t i = 0; i < 2 && !state_.timeRuns(); ++i)
       if (const Judgement& j = state_.sides[i].judgement; j.known())
         json["reference"][i == 0 ? "a" : "b"] = {
             {"nrmse", j.nrmse().value}, {"low", j.nrmse().low}, {"high", j.nrmse().high}, {"bias", j.bias()}};

@@ -6,8 +6,8 @@
 
 namespace lucerna::gl {
 
-/// Buffers, textures, framebuffers, vertex arrays, samplers, queries and programs of the current context with names up
-/// to 65536. Drivers give the smallest free names first (Mesa), or small ones. Takes some milliseconds.
+/// Buffers, textures, framebuffers, vertex arrays, samplers, queries and programs of the current context, with names up
+/// to the newest of their kind, or to 65536. Takes some milliseconds.
 std::size_t countLiveObjects();
 
 }  // namespace lucerna::gl

@@ -64,7 +64,7 @@ Image IrradianceCache::readFromCells(const CascadeSettings& settings, const std:
   const shared::CascadeConstants grids = cascadeConstants(settings, cascades, blendBand, referenceIrradiance_);
   const gl::Buffer cells("cascades of cells", sizeof grids, &grids, gl::Usage::staticDraw);
   gl::ShaderFlags flags = rayFlags(CACHE_LANES);
-  flags.insert(flags.end(), {{"CACHED", 0}, {"FROM_CELLS", 1}});
+  flags.insert(flags.end(), {{"CACHED", 0}, {"FROM_CELLS", 1}, {"KEEPS", 0}});
   const gl::Program& program = programs_->loadCompute("cache paths from cells", "irradiance_cache/paths.comp", flags);
   return atPixels(1, [&](const gl::Buffer& work) {
     cells.bindUniform(BLOCK_CASCADES);

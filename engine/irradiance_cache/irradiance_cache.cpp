@@ -36,6 +36,8 @@ float typicalOf(const Scene& scene) {
   return result > 0.0f ? std::clamp(result, 1e-30f, 1e30f) : 1.0f;
 }
 
+std::size_t lampsOf(const Scene& scene) { return scene.spots.size() + scene.points.size() + (scene.sun ? 1 : 0); }
+
 /// Whether the camera jumped, so that there is no previous picture to stay consistent with.
 bool isCut(const Cascade& before, const Cascade& now) {
   constexpr std::int64_t kCells = 4;
@@ -121,11 +123,12 @@ IrradianceCache::IrradianceCache(gl::ProgramLibrary& programs, const gl::Capabil
   const gl::ShaderFlags& rays = rays_ = rayFlags(lanes);
   mark_ = &programs.loadCompute("cache mark records", "irradiance_cache/mark.comp", gl::with(common, {{"CLAIM", 0}}));
   claim_ = &programs.loadCompute("cache claim records", "irradiance_cache/mark.comp", gl::with(common, {{"CLAIM", 1}}));
-  keep_ = &programs.loadCompute("cache keep records", "irradiance_cache/keep.comp", gl::with(common, {{"FOLLOWS", 0}}));
+  keep_ = &programs.loadCompute("cache keep records", "irradiance_cache/keep.comp",
+                                gl::with(common, {{"FOLLOWS", 0}, {"KEEPS", 0}}));
   list_ = &programs.loadCompute("cache list records", "irradiance_cache/list.comp", rays);
   if (settings.transport == CacheTransport::rays)
     paths_ = &programs.loadCompute("cache paths", "irradiance_cache/paths.comp",
-                                   gl::with(rays, {{"CACHED", cached_}, {"FROM_CELLS", 0}}));
+                                   gl::with(rays, {{"CACHED", cached_}, {"FROM_CELLS", 0}, {"KEEPS", 0}}));
   if (settings.prefetch > 0)
     prefetch_ = &programs.loadCompute("cache prefetch points", "irradiance_cache/prefetch.comp", rays);
   store_ = &programs.loadCompute("cache store records", "irradiance_cache/store.comp", common);
@@ -152,15 +155,21 @@ void IrradianceCache::forget() {
   gl::clearToZero(textures, clearTexture_);
   cascades_.clear();
   counts_ = {};
+  if (kept_) kept_->areValid = false;
   if (gather_) gather_->forget();
 }
 
-bool IrradianceCache::follow(const Scene& scene, const std::vector<Bounds>& moved) {
+bool IrradianceCache::follow(const Scene& scene, const std::vector<Bounds>& moved, bool lampsAlone) {
   const bool isSame = settings_.transport == CacheTransport::rays && rays_ == rayFlags(settings_.rays);
   if (!isSame) return false;
-  if (!keepFollowed_)
-    keepFollowed_ = &programs_->loadCompute("cache keep records", "irradiance_cache/keep.comp",
-                                            gl::with(lookupFlags(settings_), {{"FOLLOWS", 1}}));
+  if (!keepFollowed_) {
+    const bool lightsAll = cached_ && path_.minScatterings <= 1;
+    if (settings_.keepsHits && lightsAll && lampsOf(scene) <= CACHE_MOST_LAMPS) makeKept();
+    keepFollowed_ =
+        &programs_->loadCompute("cache keep records", "irradiance_cache/keep.comp",
+                                gl::with(lookupFlags(settings_), {{"FOLLOWS", 1}, {"KEEPS", kept_ != nullptr}}));
+  }
+  if (kept_) kept_->allAnew = kept_->allAnew || !lampsAlone;
   moved_.insert(moved_.end(), moved.begin(), moved.end());
   scene_.fill(path_);
   typicalIrradiance_ = typicalOf(scene);
@@ -214,7 +223,12 @@ void IrradianceCache::keep(const gl::Program& program) {
   bindRecords();
   if (followed_) {
     program.set("movedBoxes", static_cast<unsigned>(moved_.size()));
-    movedBoxes_.bindStorage(CACHE_MOVED_BUFFER);
+    movedBoxes_.buffer().bindStorage(CACHE_MOVED_BUFFER);
+  }
+  if (followed_ && kept_) {
+    std::swap(kept_->hits[0], kept_->hits[1]);
+    kept_->hits[1].bindStorage(CACHE_HITS_BEFORE_BUFFER);
+    kept_->hits[0].bindStorage(CACHE_HITS_BUFFER);
   }
   records_[1].bindStorage(CACHE_RECORDS_BUFFER);
   records_[0].bindStorage(CACHE_KEPT_BUFFER);
@@ -268,7 +282,7 @@ void IrradianceCache::mark(const Inputs& inputs) {
 void IrradianceCache::list(int target, bool countsFading) {
   std::array<GLuint, kWorkWords> none = noWork();
   none[kFrame] = frame_;
-  work_[0].upload(kWaiting * sizeof(GLuint), (kWorkWords - kWaiting) * sizeof(GLuint), &none[kWaiting]);
+  work_[0].upload(kWaiting * sizeof(GLuint), (kTraced - kWaiting) * sizeof(GLuint), &none[kWaiting]);
   bindRecords();
   cascadeConstantsBefore_.bindUniform(BLOCK_CASCADES);  // new records look up the light shown in their place before
   irradiance_.bind(UNIT_CACHE);
@@ -287,7 +301,7 @@ void IrradianceCache::list(int target, bool countsFading) {
 
 std::array<GLuint, IrradianceCache::kWorkWords> IrradianceCache::noWork() {
   std::array<GLuint, kWorkWords> words{0, 1, 1};
-  for (std::size_t part = kLitGroups; part < kWorkWords; part += 3) words[part + 1] = words[part + 2] = 1;
+  for (std::size_t part = kLitGroups; part < kTraced; part += 3) words[part + 1] = words[part + 2] = 1;
   return words;
 }
 
@@ -305,6 +319,72 @@ void IrradianceCache::light(int target) {
   irradiance_.bind(UNIT_CACHE);
   gl::Submission::add(mostIterations());
   dispatchListed(pass, *paths_, work_[0]);
+}
+
+void IrradianceCache::makeKept() {
+  const gl::ShaderFlags paths = gl::with(rays_, {{"CACHED", 1}, {"FROM_CELLS", 0}, {"KEEPS", 1}});
+  kept_ = std::make_unique<KeptHits>();
+  kept_->lamps = &programs_->loadCompute("cache light of lamps", "irradiance_cache/lamps.comp", rays_);
+  for (int moved = 0; moved < 2; ++moved)
+    kept_->retrace[static_cast<std::size_t>(moved)] = &programs_->loadCompute(
+        "cache paths to trace again", "irradiance_cache/retrace.comp", gl::with(rays_, {{"MOVED", moved}}));
+  kept_->trace = &programs_->loadCompute("cache kept paths", "irradiance_cache/paths.comp", paths);
+  kept_->relight =
+      &programs_->loadCompute("cache relight records", "irradiance_cache/relight.comp", lookupFlags(settings_));
+  const std::size_t hits = std::min(capacity_, std::size_t{CACHE_KEEPING}) * CACHE_HITS;
+  for (gl::Buffer& buffer : kept_->hits)
+    buffer = gl::Buffer("cache hits", hits * sizeof(shared::CacheHit), nullptr, gl::Usage::dynamicCopy);
+  kept_->traced = gl::Buffer("cache traced paths", hits * sizeof(GLuint), nullptr, gl::Usage::dynamicCopy);
+  kept_->light = gl::BufferTexture("cache light", gl::Format::rgba32f, capacity_ * sizeof(glm::vec4), nullptr,
+                                   gl::Usage::dynamicCopy);
+}
+
+// After surfaces or lights have moved: all records are lit by what their paths hit; only paths that meet what has moved
+// are traced again.
+void IrradianceCache::relight() {
+  KeptHits& kept = *kept_;
+  list(0);  // places new records
+  {
+    const gl::ComputePass pass("cache light of lamps", gl::Barrier::storage | gl::Barrier::textureFetch);
+    kept.lamps->use();
+    bindRecords();
+    scene_.bind();
+    kept.light.buffer().bindStorage(CACHE_LIST_BUFFER);
+    pass.dispatchIndirect(work_[0]);
+  }
+  {
+    const GLuint none = 0;
+    work_[0].upload(kTraced * sizeof(GLuint), sizeof none, &none);
+    const gl::ComputePass pass("cache paths to trace again", gl::Barrier::storage | gl::Barrier::command);
+    const gl::Program& retrace = *kept.retrace[moved_.empty() ? 0 : 1];
+    retrace.use();
+    if (!moved_.empty()) retrace.set("movedBoxes", static_cast<int>(moved_.size()));
+    retrace.set("allAnew", kept.areValid ? 0 : 1);
+    retrace.set("budget", settings_.tracedPaths == IrradianceCacheSettings::kAllPaths
+                              ? ~0u
+                              : static_cast<unsigned>(settings_.tracedPaths));
+    kept.traced.bindStorage(CACHE_LIST_BUFFER);
+    kept.hits[0].bindStorage(CACHE_HITS_BUFFER);
+    movedBoxes_.bind(UNIT_CACHE_MOVED);
+    slotTable_.bind(UNIT_CACHE_SLOTS);
+    kept.light.bind(UNIT_CACHE_LIGHT);
+    pass.dispatchIndirect(work_[0]);
+  }
+  gl::Submission::add(static_cast<double>(kept.traced.bytes() / sizeof(GLuint)) * kIterationsOfPath);
+  for (unsigned part = 0; part < CACHE_PARTS; ++part) {  // each sees the records that those before have made
+    const gl::ComputePass pass("cache kept paths",
+                               gl::Barrier::storage | gl::Barrier::command | gl::Barrier::textureFetch);
+    kept.trace->use();
+    kept.trace->set("firstGroup", part * CACHE_PART_GROUPS);
+    irradiance_.bind(UNIT_CACHE);
+    slotTable_.buffer().bindStorage(CACHE_SLOTS_OF_PATHS_BUFFER);
+    pass.dispatchIndirect(work_[0], (kLitGroups + 3 * part) * sizeof(GLuint));
+  }
+  const gl::ComputePass pass("cache relight records", gl::Barrier::storage);
+  kept.relight->use();
+  pass.dispatchIndirect(work_[0]);
+  kept.areValid = true;
+  lit_.bindStorage(CACHE_LIST_BUFFER);
 }
 
 // New records gather all their light; then they are final while the maps stay.
@@ -343,7 +423,7 @@ void IrradianceCache::beginToFollow(bool fades) {
   boxes.resize(std::max(boxes.size(), std::size_t{1}));
   const std::size_t bytes = boxes.size() * sizeof(shared::MovedBox);
   if (movedBoxes_.bytes() < bytes)
-    movedBoxes_ = gl::Buffer("cache moved boxes", bytes, nullptr, gl::Usage::dynamicDraw);
+    movedBoxes_ = gl::BufferTexture("cache moved boxes", gl::Format::rgba32f, bytes, nullptr, gl::Usage::dynamicDraw);
   movedBoxes_.upload(0, bytes, boxes.data());
 }
 
@@ -356,11 +436,16 @@ void IrradianceCache::update(const Inputs& inputs, int rounds) {
   const float mostChange = inputs.fades && !cut && !followed_ ? settings_.mostChange : 0.0f;
   place(inputs);
   cascades_ = inputs.cascades;
+  // Where other light than that of lamps has changed nothing kept holds: records in view are lit as new ones are.
+  const bool relights = kept_ && followed_ && !isEmpty && !kept_->allAnew;
+  // Nor where cascades have moved: hits know records by their slots, which belong to other cells now.
+  if (kept_ && (moved || isEmpty || kept_->allAnew)) kept_->areValid = false, kept_->allAnew = false;
   if (followed_ && !isEmpty) keep(*keepFollowed_);
   else if (moved) keep(*keep_);
   followed_ = false;
-  moved_.clear();
   mark(inputs);
+  if (relights) relight();
+  moved_.clear();
   if (settings_.transport == CacheTransport::gather) {
     gather(inputs);
     store(mostChange);
@@ -368,11 +453,11 @@ void IrradianceCache::update(const Inputs& inputs, int rounds) {
     ring_->copy(work_[0]);
     return;
   }
-  for (int round = 0; round < rounds; ++round) {
+  for (int round = 0; round < rounds && !relights; ++round) {
     if (cached_ && round > 0) store(mostChange);
     light(settings_.samples);
   }
-  for (int paths = rounds * settings_.rays; paths < std::min(settings_.leastRays, settings_.samples);
+  for (int paths = relights ? 0 : rounds * settings_.rays; paths < std::min(settings_.leastRays, settings_.samples);
        paths += settings_.rays)
     light(settings_.leastRays);
   store(mostChange);
@@ -427,6 +512,7 @@ void IrradianceCache::collect(bool wait) {
     counts_.records = std::min<std::uint64_t>(words[kWanted], capacity_);
     counts_.left = words[kWanted] - counts_.records;
     counts_.waiting = words[kWaiting];
+    counts_.traced = words[kTraced];
     counts_.frame = words[kFrame];
   }
 }
@@ -451,6 +537,7 @@ std::size_t IrradianceCache::gpuBytes() const {
                       irradiance_.bytes() + prefetchPoints_.bytes() + movedBoxes_.bytes() + ring_->bytes() +
                       (gather_ ? gather_->gpuBytes() : 0);
   for (std::size_t i = 0; i < 2; ++i) bytes += records_[i].bytes() + work_[i].bytes();
+  if (kept_) bytes += kept_->hits[0].bytes() + kept_->hits[1].bytes() + kept_->traced.bytes() + kept_->light.bytes();
   return bytes;
 }
 

@@ -33,6 +33,17 @@
 
 namespace lucerna {
 
+/// What paths have hit, kept while the scene moves (shaders/irradiance_cache/relight.comp).
+struct KeptHits {
+  const gl::Program *lamps, *trace, *relight;
+  std::array<const gl::Program*, 2> retrace;  ///< the second: where surfaces have moved
+  std::array<gl::Buffer, 2> hits;  ///< CACHE_HITS per record; the second: before the records were moved
+  gl::Buffer traced;  ///< paths to be traced
+  gl::BufferTexture light;  ///< of a record, for paths that end at it
+  bool areValid = false;  ///< records marked CACHE_KEPT have hits of now
+  bool allAnew = false;  ///< other light than that of lamps has changed
+};
+
 class IrradianceCache {
  public:
   using Light = CachedLight;
@@ -52,6 +63,7 @@ class IrradianceCache {
     std::uint64_t records = 0;  ///< in total
     std::uint64_t waiting = 0;  ///< visible ones that still lack paths
     std::uint64_t left = 0;  ///< records that did not fit
+    std::uint64_t traced = 0;  ///< paths traced again when the scene last moved
     std::uint32_t frame = 0;  ///< as frame() counts them
   };
 
@@ -67,8 +79,9 @@ class IrradianceCache {
   void update(const Inputs& inputs, int rounds = 1);
   /// The scene moves, and `traced` with it. The next update lights all records anew. Where the picture fades in they
   /// stay in their places, outside of `moved` boxes (where surfaces were or are now, among the frame's positions), and
-  /// paths end at the light shown before; a whole picture is that of a new cache. False: other programs are needed.
-  bool follow(const Scene& scene, const std::vector<Bounds>& moved);
+  /// paths end at the light shown before; a whole picture is that of a new cache. lampsAlone: of all light, at most
+  /// that of sun and lamps is another. False: other programs are needed.
+  bool follow(const Scene& scene, const std::vector<Bounds>& moved, bool lampsAlone);
   /// Drops everything stored, as before the first frame.
   void forget();
 
@@ -118,7 +131,7 @@ class IrradianceCache {
  private:
   static constexpr double kIterationsOfPath = 256.0;  ///< of a lane, approximately (gl/chunks.hpp)
   // Words of shaders/irradiance_cache/work.glsl.
-  static constexpr std::size_t kWanted = 3, kWaiting = 4, kFrame = 5, kLitGroups = 6, kWorkWords = 36;
+  static constexpr std::size_t kWanted = 3, kWaiting = 4, kFrame = 5, kLitGroups = 6, kTraced = 36, kWorkWords = 37;
   static std::array<GLuint, kWorkWords> noWork();  ///< groups of all dispatches: 0 by 1 by 1
 
   void beginToFollow(bool fades);
@@ -130,6 +143,8 @@ class IrradianceCache {
   void light(int target);
   void gather(const Inputs& inputs);
   void store(float mostChange);
+  void makeKept();
+  void relight();
   void bindRecords() const;
   /// Dispatches a program over the listed records, part after part.
   static void dispatchListed(const gl::ComputePass& pass, const gl::Program& program, const gl::Buffer& work);
@@ -157,7 +172,9 @@ class IrradianceCache {
       cascadeConstantsBefore_;  ///< the second: the cascades to which irradiance_ belongs when an update begins
   const gl::Program* keepFollowed_ = nullptr;  ///< only in scenes that move
   std::vector<Bounds> moved_;
-  gl::Buffer constants_, pathConstants_, lit_, prefetchPoints_, movedBoxes_;
+  gl::BufferTexture movedBoxes_;
+  std::unique_ptr<KeptHits> kept_;  ///< only in scenes that move, once they have
+  gl::Buffer constants_, pathConstants_, lit_, prefetchPoints_;
   std::array<gl::Buffer, 2> records_, work_;  ///< the second of each: before the cascades moved
   gl::BufferTexture slotTable_, keys_, seen_;
   gl::Texture irradiance_;  ///< cacheIrradiance in GLSL: as looked up

@@ -93,7 +93,8 @@ bool IrradianceCacheFrame::follow(const SceneChange& change) {
     moved.push_back(now);
     meshes_[mesh] = now;
   }
-  if (!cache_.follow(parts_.scene, moved)) return false;
+  const bool lampsAlone = !change.materials && !change.environment && !change.media;
+  if (!cache_.follow(parts_.scene, moved, lampsAlone)) return false;
   makeReflections();
   settled_ = false;
   return true;

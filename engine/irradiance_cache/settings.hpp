@@ -36,6 +36,10 @@ struct IrradianceCacheSettings {
   /// Largest relative change per frame of the shown irradiance while the camera moves or paths are added; 0: no limit.
   float mostChange = 0.0025f;
   int reflections = 4;  ///< rays per pixel of a coat, a mirror or glass, that find what it reflects; 0: none
+  /// What paths hit is kept while the scene moves: a record is relit, and only paths that meet what moved are traced.
+  bool keepsHits = true;
+  static constexpr int kAllPaths = 0;
+  int tracedPaths = kAllPaths;  ///< of kept ones, traced again per frame at most
   bool fullFloat = false;  ///< 32 bits instead of 16; also where lamps differ too much in strength for 16
 };
 

@@ -14,8 +14,11 @@
 #include <cstdint>
 #include <future>
 #include <limits>
+#include <map>
+#include <set>
 #include <span>
 #include <thread>
+#include <utility>
 
 namespace lucerna {
 
@@ -100,11 +103,12 @@ std::array<glm::vec3, 3> cornersOf(const Scene& scene, std::size_t triangle) {
 // The triangles that rays can hit, in the space of the hierarchy, in the order of the scene.
 struct Triangles {
   std::vector<BvhTriangle> kept;
+  std::vector<std::uint32_t> parts;  // of each, if any mesh moves: 0 at rest, else 1 + the number of its moving mesh
   glm::dvec3 origin;
   float magnitude = 0.0f;
 };
 
-Triangles collect(const Scene& scene) {
+Triangles collect(const Scene& scene, std::span<const std::size_t> moving) {
   Triangles result;
   std::vector<std::uint32_t> flags(scene.triangleCount(), 0u);
   for (const Mesh& mesh : scene.meshes) {
@@ -120,6 +124,14 @@ Triangles collect(const Scene& scene) {
     triangle.id = static_cast<std::uint32_t>(t) | flags[t];
     bounds.add(boxOf(triangle));
     result.kept.push_back(triangle);
+  }
+  if (!moving.empty()) {
+    std::vector<std::uint32_t> part(scene.triangleCount(), 0u);
+    for (std::size_t k = 0; k < moving.size(); ++k) {
+      const Mesh& mesh = scene.meshes[moving[k]];
+      std::fill_n(part.begin() + mesh.firstIndex / 3, mesh.indexCount / 3, static_cast<std::uint32_t>(k + 1));
+    }
+    for (const BvhTriangle& triangle : result.kept) result.parts.push_back(part[triangle.id & BVH_TRIANGLE_ID_MASK]);
   }
   result.origin = floatingOrigin({glm::dvec3(bounds.min), glm::dvec3(bounds.max)});
   for (BvhTriangle& triangle : result.kept) {
@@ -142,18 +154,18 @@ struct BinaryNode {
 
 class BinaryBuilder {
  public:
-  BinaryBuilder(const std::vector<BvhTriangle>& triangles, const BvhSettings& settings) : triangles_(triangles) {
+  BinaryBuilder(const Triangles& scene, const BvhSettings& settings) : triangles_(scene.kept), parts_(scene.parts) {
     spareThreads_ = (settings.threads > 0 ? settings.threads
                                           : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()))) -
                     1;
     std::vector<Reference> all;
-    for (std::size_t i = 0; i < triangles.size(); ++i) {
-      all.push_back({boxOf(triangles[i]), static_cast<std::uint32_t>(i)});
+    for (std::size_t i = 0; i < triangles_.size(); ++i) {
+      all.push_back({boxOf(triangles_[i]), static_cast<std::uint32_t>(i)});
       rootBox_.add(all.back().box);
     }
     const auto spare = static_cast<std::size_t>(settings.splitBudget * static_cast<double>(all.size()));
     nodes_.resize(std::max<std::size_t>(1, 2 * (all.size() + spare)));
-    if (!all.empty()) build(std::move(all), spare, 1);
+    if (!all.empty()) build(std::move(all), spare, 1, !parts_.empty());
   }
   /// 0 is the root.
   const std::vector<BinaryNode>& nodes() const { return nodes_; }
@@ -171,7 +183,8 @@ class BinaryBuilder {
     return box;
   }
 
-  std::uint32_t build(std::vector<Reference> references, std::size_t spare, int depth) {
+  // mixed: the references may be of several parts of the scene.
+  std::uint32_t build(std::vector<Reference> references, std::size_t spare, int depth, bool mixed) {
     // Threads beside this one have no watch of their own: they see its answer.
     constexpr std::size_t kLong = 1024;  // references
     if (references.size() > kLong) {
@@ -190,23 +203,25 @@ class BinaryBuilder {
       return index;
     }
     std::vector<Reference> left, right;
-    divide(references, node.box, spare, depth, left, right);
+    const bool apart = mixed && divideParts(references, left, right);
+    if (mixed && !apart && parts_[references[0].triangle] != 0) spare = 0;  // boxes of clipped triangles do not move
+    if (!apart) divide(references, node.box, spare, depth, left, right);
     const std::size_t added = left.size() + right.size() - references.size();
     CHECK(!left.empty() && !right.empty() && added <= spare, "{} + {} references of {}, {} to spare", left.size(),
           right.size(), references.size(), spare);
     references = {};
-    const std::size_t leftSpare = (spare - added) * left.size() / (left.size() + right.size()),
+    const std::size_t leftSpare = apart ? spare : (spare - added) * left.size() / (left.size() + right.size()),
                       rightSpare = spare - added - leftSpare;
     std::future<std::uint32_t> other;
     if (left.size() >= kParallelFrom && right.size() >= kParallelFrom && spareThreads_.fetch_sub(1) > 0) {
-      other = std::async(std::launch::async, [&] { return build(std::move(left), leftSpare, depth + 1); });
-      node.right = build(std::move(right), rightSpare, depth + 1);
+      other = std::async(std::launch::async, [&] { return build(std::move(left), leftSpare, depth + 1, apart); });
+      node.right = build(std::move(right), rightSpare, depth + 1, apart);
       node.left = other.get();
       ++spareThreads_;
     } else {
       if (left.size() >= kParallelFrom && right.size() >= kParallelFrom) ++spareThreads_;
-      node.left = build(std::move(left), leftSpare, depth + 1);
-      node.right = build(std::move(right), rightSpare, depth + 1);
+      node.left = build(std::move(left), leftSpare, depth + 1, apart);
+      node.right = build(std::move(right), rightSpare, depth + 1, apart);
     }
     node.references = nodes_[node.left].references + nodes_[node.right].references;
     return index;
@@ -366,6 +381,27 @@ class BinaryBuilder {
     return good;
   }
 
+  // The top level, over the parts of a scene that moves: what is at rest, then half of the moving meshes, in their
+  // order along the longest axis. False if all references are of one part.
+  bool divideParts(const std::vector<Reference>& references, std::vector<Reference>& left,
+                   std::vector<Reference>& right) const {
+    std::map<std::uint32_t, Box> boxes;
+    Box centres;
+    for (const Reference& r : references) boxes[parts_[r.triangle]].add(r.box);
+    if (boxes.size() == 1) return false;
+    for (const auto& [part, box] : boxes) centres.add(box.centre());
+    const glm::vec3 e = centres.max - centres.min;
+    const int axis = e.x >= e.y && e.x >= e.z ? 0 : e.y >= e.z ? 1 : 2;
+    std::vector<std::pair<float, std::uint32_t>> order;
+    for (const auto& [part, box] : boxes)
+      if (part != 0) order.emplace_back(box.centre()[axis], part);
+    std::sort(order.begin(), order.end());
+    std::set<std::uint32_t> first{0u};
+    for (std::size_t k = 0; !boxes.contains(0u) && k < order.size() / 2; ++k) first.insert(order[k].second);
+    for (const Reference& r : references) (first.contains(parts_[r.triangle]) ? left : right).push_back(r);
+    return true;
+  }
+
   void divide(std::vector<Reference>& references, const Box& box, std::size_t spare, int depth,
               std::vector<Reference>& left, std::vector<Reference>& right) const {
     Box centres;
@@ -397,6 +433,7 @@ class BinaryBuilder {
   }
 
   const std::vector<BvhTriangle>& triangles_;
+  const std::vector<std::uint32_t>& parts_;
   Box rootBox_;
   std::vector<BinaryNode> nodes_;
   std::atomic<std::uint32_t> used_{0};
@@ -598,11 +635,11 @@ class Collapse {
 
 Bvh buildBvh(const Scene& scene, const BvhSettings& settings) {
   const auto start = Clock::now();
-  const Triangles triangles = collect(scene);
+  const Triangles triangles = collect(scene, settings.moving);
   Bvh bvh;
   bvh.origin = triangles.origin;
   bvh.magnitude = triangles.magnitude;
-  const BinaryBuilder binary(triangles.kept, settings);
+  const BinaryBuilder binary(triangles, settings);
   Collapse(binary.nodes(), triangles.kept, bvh);
   BvhStatistics& s = bvh.statistics;
   s.triangles = triangles.kept.size();

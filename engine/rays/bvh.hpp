@@ -20,6 +20,9 @@ namespace lucerna {
 struct BvhSettings {
   int threads = 0;  ///< for building; 0: all cores. The result is the same.
   double splitBudget = 0.3;  ///< spatial splits add at most this fraction of references [Stich2009]; 0: none
+  /// Meshes that will move: each has a subtree of its own, whole triangles alone, so that none of the others' boxes
+  /// grow with it.
+  std::vector<std::size_t> moving = {};
 };
 
 struct BvhStatistics {

@@ -1,6 +1,7 @@
 #include "rays/ray_scene.hpp"
 
 #include "base/error.hpp"
+#include "scene/motion.hpp"
 
 #include <algorithm>
 #include <cstring>
@@ -16,6 +17,7 @@ RayScene::RayScene(const Scene& scene, const gl::Capabilities& capabilities, con
     : settings_(settings),
       limit_(16 * static_cast<std::size_t>(capabilities.maxTextureBufferSize)),
       sharedStack_(settings.sharedStack.value_or(!capabilities.softwareRenderer)) {
+  if (settings_.moves && scene.motion) settings_.bvh.moving = scene.motion->meshes;
   Bvh bvh = buildBvh(scene, settings_.bvh);
   upload(scene, bvh);
   if (!settings_.moves) return;

@@ -25,7 +25,8 @@ constexpr std::size_t kMostZeroElements = 1u << 22;
 constexpr std::string_view kSupported[] = {
     "EXT_mesh_gpu_instancing",    "KHR_lights_punctual",   "KHR_materials_emissive_strength",
     "KHR_materials_ior",          "KHR_materials_volume",  "KHR_materials_pbrSpecularGlossiness",
-    "KHR_materials_transmission", "KHR_texture_transform", "KHR_mesh_quantization"};
+    "KHR_materials_transmission", "KHR_texture_transform", "KHR_mesh_quantization",
+    "KHR_animation_pointer"};
 
 bool isSupported(std::string_view name) {
   return std::find(std::begin(kSupported), std::end(kSupported), name) != std::end(kSupported);

@@ -310,4 +310,17 @@ Material materialOf(GltfMaterial& gltf, const glm::vec3& tint, TextureLoader& te
   return material;
 }
 
+void setFactors(Material& material, const GltfMaterial& gltf, const glm::vec3& tint, const glm::vec3& metalMean,
+                const glm::vec3& emissiveMean) {
+  const glm::vec3 base = gltf.base * tint;
+  setMetallicRoughness(material, base, gltf.metallic * metalMean.z, gltf.roughness * metalMean.y, 0.0f);
+  if (gltf.specular) {
+    material.specular = *gltf.specular;
+    material.diffuse = base;
+  }
+  if (material.metalMap) material.metalMap = {base, gltf.metallic, gltf.roughness, material.metalMap->texture};
+  material.emissionScale = gltf.emissive * gltf.emissiveStrength;
+  material.emission = material.emissionScale * emissiveMean;
+}
+
 }  // namespace lucerna

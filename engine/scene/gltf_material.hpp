@@ -55,4 +55,9 @@ TextureLoader::Embedded gltfPictures(const GltfFile& file);
 /// inside to the scene. What is invisible everywhere has an opacity of 0.
 Material materialOf(GltfMaterial& gltf, const glm::vec3& tint, TextureLoader& textures, Scene& scene);
 
+/// Sets what an animated material's factors determine; its pictures and its kind stay. Means of the pictures of
+/// metallic-roughness and of emission, 1 without one.
+void setFactors(Material& material, const GltfMaterial& gltf, const glm::vec3& tint, const glm::vec3& metalMean,
+                const glm::vec3& emissiveMean);
+
 }  // namespace lucerna

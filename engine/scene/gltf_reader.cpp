@@ -14,6 +14,7 @@
 #include "scene/gltf_material.hpp"
 #include "scene/gltf_meshes.hpp"
 #include "scene/motion.hpp"
+#include "scene/texture_mean.hpp"
 
 #include <algorithm>
 #include <array>
@@ -76,6 +77,7 @@ class GltfReader {
   void place();
   void warn() const;
   void addMotion();
+  void moveMaterials(SceneMotion& motion);
 
   Scene& scene_;
   std::shared_ptr<const GltfFile> shared_;
@@ -353,7 +355,14 @@ void GltfReader::readLight(const Value& node, const std::string& nodeName, std::
   light.position = glm::dvec3(world[3]);
   light.direction = -glm::dvec3(world[2]);
   const double intensity = given.has("intensity") ? given.at("intensity").number() : 1.0;
-  light.colour = glm::vec3(glm::dvec3(given.has("color") ? given.at("color").light() : glm::vec3(1.0f)) * intensity);
+  const glm::dvec3 colour(given.has("color") ? given.at("color").light() : glm::vec3(1.0f));
+  light.colour = glm::vec3(colour * intensity);
+  if (const auto which = number.json.get<std::size_t>(); animations_.movesLight(which)) {
+    light.colourAt = [animations = animations_, which, colour, intensity](double seconds) {
+      return animations.lightAt(which, colour, intensity, seconds);
+    };
+    if (light.colour == glm::vec3(0.0f)) light.colour = glm::vec3(1.0f);  // it may be off at rest
+  }
   if (light.kind == ModelLight::Kind::spot) {
     light.outerAngle = 0.25 * kPi;
     if (given.has("spot")) {
@@ -438,6 +447,7 @@ void GltfReader::addMotion() {
       }
     };
   }
+  moveMaterials(motion);
   views_.worldFromNode = [meshes = meshes_, animations = animations_, origin = scene_.origin](std::size_t node,
                                                                                               double seconds) {
     meshes->setPose(animations.at(seconds));
@@ -446,6 +456,33 @@ void GltfReader::addMotion() {
     return world;
   };
   views_.moves = [animations = animations_](std::size_t node) { return animations.moves(node); };
+}
+
+void GltfReader::moveMaterials(SceneMotion& motion) {
+  struct Moved {
+    std::size_t index, material;  ///< in the file, in the scene
+    GltfMaterial gltf;
+    glm::vec3 tint, metalMean, emissiveMean;
+  };
+  std::vector<Moved> moved;
+  for (const auto& [key, material] : materials_) {
+    if (!key.first || !animations_.movesMaterial(*key.first)) continue;
+    const GltfMaterial& gltf = propertiesOf(key.first);
+    const auto number = static_cast<std::size_t>(material);
+    const int metal = textures_.optional(gltf.metalPicture), emission = scene_.materials[number].emissionTexture;
+    moved.push_back({*key.first, number, gltf, glm::vec3(key.second[0], key.second[1], key.second[2]),
+                     metal >= 0 ? meanValue(textures_[metal]) : glm::vec3(1.0f),
+                     emission >= 0 ? glm::vec3(meanColour(textures_[emission])) : glm::vec3(1.0f)});
+  }
+  if (moved.empty()) return;
+  motion.names.emplace_back("materials");
+  motion[SceneMotion::Part::media] = [animations = animations_, moved](Scene& scene, double seconds) {
+    for (const Moved& one : moved) {
+      GltfMaterial now = one.gltf;
+      animations.setMaterial(now, one.index, seconds);
+      setFactors(scene.materials[one.material], now, one.tint, one.metalMean, one.emissiveMean);
+    }
+  };
 }
 
 }  // namespace

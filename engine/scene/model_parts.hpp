@@ -104,6 +104,7 @@ struct ModelLight {
   float attenuation = 1.0f;  ///< quadratic
   double innerAngle = 0.0, outerAngle = 0.0;  ///< of a spot, from its axis
   std::size_t node = 0;  ///< of glTF files
+  std::function<glm::vec3(double seconds)> colourAt{};  ///< if it is animated
 };
 
 /// Returns where each has become one of the scene's: of those of its kind; -1: ignored.

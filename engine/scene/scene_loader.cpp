@@ -153,12 +153,21 @@ void addMovingViews(Scene& scene, const ModelViews& views, const std::vector<int
                                          std::tuple(Kind::spot, SceneMotion::Part::spots, "spots"),
                                          std::tuple(Kind::point, SceneMotion::Part::points, "points")}) {
     std::vector<std::pair<std::size_t, std::size_t>> moved;  // the scene's number of a light, and its node
-    for (std::size_t i = 0; i < lights.size(); ++i)
-      if (lights[i] >= 0 && views.lights[i].kind == kind && views.moves(views.lights[i].node))
-        moved.emplace_back(static_cast<std::size_t>(lights[i]), views.lights[i].node);
-    if (moved.empty()) continue;
+    std::vector<std::pair<std::size_t, std::function<glm::vec3(double)>>> coloured;
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+      const ModelLight& light = views.lights[i];
+      if (lights[i] < 0 || light.kind != kind) continue;
+      if (views.moves(light.node)) moved.emplace_back(static_cast<std::size_t>(lights[i]), light.node);
+      if (light.colourAt) coloured.emplace_back(static_cast<std::size_t>(lights[i]), light.colourAt);
+    }
+    if (moved.empty() && coloured.empty()) continue;
     motion.names.emplace_back(name);
-    motion[part] = [kind = kind, moved, world = views.worldFromNode](Scene& posed, double seconds) {
+    motion[part] = [kind = kind, moved, coloured, world = views.worldFromNode](Scene& posed, double seconds) {
+      for (const auto& [light, colourAt] : coloured) {
+        if (kind == Kind::point) posed.points[light].intensity = colourAt(seconds);
+        if (kind == Kind::spot) posed.spots[light].intensity = colourAt(seconds);
+        if (kind == Kind::directional) posed.sun->irradiance = colourAt(seconds);
+      }
       for (const auto& [light, node] : moved) {
         const glm::dmat4 m = world(node, seconds);
         const glm::dvec3 forwards = -glm::dvec3(m[2]);

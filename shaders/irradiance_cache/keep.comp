@@ -1,6 +1,6 @@
 // Runs after the cascades or surfaces have moved: keeps the records whose cell is still inside, and registers their
 // slots again. FOLLOWS: after surfaces or lights have moved. Records at surfaces that were or are others are dropped;
-// the rest lacks all their paths again.
+// the rest lacks all their paths again, but keeps what these have hit.
 layout(local_size_x = 64) in;
 #include "irradiance_cache/common.glsl"
 #include "irradiance_cache/work.glsl"
@@ -12,6 +12,10 @@ layout(std430, binding = CACHE_WORK_BEFORE_BUFFER) readonly restrict buffer Cach
 #if FOLLOWS
 layout(std430, binding = CACHE_MOVED_BUFFER) readonly restrict buffer CacheMoved { MovedBox moved[]; };
 uniform uint movedBoxes;
+#if KEEPS
+layout(std430, binding = CACHE_HITS_BEFORE_BUFFER) readonly restrict buffer CacheHitsBefore { CacheHit hitsBefore[]; };
+layout(std430, binding = CACHE_HITS_BUFFER) writeonly restrict buffer CacheHits { CacheHit hits[]; };
+#endif
 
 // Also beside them, by a cell: a slot may hold what they hide now, or have hidden.
 bool isMoved(vec3 position, float cellSize) {
@@ -33,6 +37,7 @@ void main() {
   if (r.triangle == CACHE_NOWHERE || !isInside) return;
 #if FOLLOWS
   if (r.triangle == CACHE_UNPLACED || isMoved(r.position, grids.cascades[cascade].cellSize)) return;
+  uint stateBefore = r.state;
   r.state = (r.state & CACHE_FRONT) | CACHE_FIRST;
   r.irradiance = vec3(0.0);
   r.paths = 0u;
@@ -40,6 +45,13 @@ void main() {
 #endif
   uint index = atomicAdd(work.wanted, 1u);
   atomicMax(work.allGroupsX, index / uint(CACHE_LANES) + 1u);
+#if FOLLOWS && KEEPS
+  if ((stateBefore & CACHE_KEPT) != 0u && i < uint(CACHE_KEEPING) && index < uint(CACHE_KEEPING)) {
+    r.state |= CACHE_KEPT;
+    for (uint k = 0u; k < uint(CACHE_HITS); ++k)
+      hits[index * uint(CACHE_HITS) + k] = hitsBefore[i * uint(CACHE_HITS) + k];
+  }
+#endif
   records[index] = r;
   slots[slotOf(cascade, r.cell.w % CACHE_FACES, r.cell.xyz)] = index + 1u;
 }

@@ -9,6 +9,8 @@
 // What surfaces close to a spot or an omnidirectional lamp reflect is found by rays from the lamp: see isFoundFromLamp.
 // CACHED: where a path's hit lies among records, their irradiance of the previous frame replaces the rest of the
 // path. One bounce per frame thus adds up to all of them; elsewhere the path continues.
+// KEEPS: traces the paths that retrace.comp lists, one per lane, and keeps what they hit (CacheHit) for relight.comp. A
+// path ends at the first surface for which a record stands, whose light holds that of lamps as well.
 layout(local_size_x = 64) in;  // CACHE_LANES; GLSL 4.30 accepts only literals here
 #include "shared/bindings.h"
 #include "shared/path_tracer.h"
@@ -22,7 +24,7 @@ layout(std140, binding = BLOCK_CACHE_PATHS) uniform PathBlock { PathConstants tr
 #if NEXT_EVENT
 #include "rays/lights.glsl"
 #endif
-#if NEXT_EVENT && (SPOTS || POINTS) && !FROM_CELLS
+#if NEXT_EVENT && (SPOTS || POINTS) && !FROM_CELLS && !KEEPS
 #define LAMP_RAYS 1
 const uint kRaysOfScattering = 4u;  // a shadow ray and the path's own, and a lamp's with another shadow ray
 #else
@@ -31,13 +33,27 @@ const uint kRaysOfScattering = 2u;
 #endif
 #if CACHED
 #include "irradiance_cache/lookup.glsl"
+#if KEEPS
+#include "lib/clamped_int.glsl"
+#include "irradiance_cache/kept.glsl"
+#include "irradiance_cache/stands_for.glsl"
+layout(std430, binding = CACHE_HITS_BUFFER) writeonly restrict buffer CacheHits { CacheHit hits[]; };
+CacheHit kept;  // of this lane
+vec2 keptBarycentrics;  // of its first hit
+#endif
 #else
 #include "irradiance_cache/common.glsl"
 #endif
 // unordered CacheRecords: each dispatch changes the records of its own part of the list
 layout(std430, binding = CACHE_RECORDS_BUFFER) restrict buffer CacheRecords { CacheRecord records[]; };
 #include "irradiance_cache/work.glsl"
+#if KEEPS
+layout(std430, binding = CACHE_WORK_BUFFER) restrict buffer CacheWorkOfPaths { CacheWork work; };
+// aliased CacheSlots: only the winner of an empty slot changes it; all others skip the slot with either value
+layout(std430, binding = CACHE_SLOTS_OF_PATHS_BUFFER) restrict buffer CacheSlots { uint slots[]; };
+#else
 layout(std430, binding = CACHE_WORK_BUFFER) readonly restrict buffer CacheWorkBlock { CacheWork work; };
+#endif
 #include "irradiance_cache/record_surface.glsl"
 layout(std430, binding = CACHE_LIST_BUFFER) readonly restrict buffer CacheLit { uint lit[]; };
 uniform uint firstGroup;  // of a part of `lit`
@@ -182,6 +198,28 @@ Shadow queueShadowRay(Surface surface, uint triangle, float before2, vec3 throug
 }
 #endif
 
+#if KEEPS
+// Where no record stands for what a path has hit, makes one there, in the coarsest cascade: in the next frame the path
+// ends at it.
+void claimFor(Surface surface, uint triangle) {
+  int k = grids.shape.y - 1;
+  vec3 position = surface.position + cache.rayOrigin, lean = abs(surface.normal);
+  vec3 inCells = floor((position - grids.cascades[k].minimum) / grids.cascades[k].cellSize);
+  if (any(lessThan(inCells, vec3(0.0))) || any(greaterThanEqual(inCells, vec3(grids.shape.x)))) return;
+  ivec3 cell = clampedInt(inCells, ivec3(0), ivec3(grids.shape.x - 1)) + cache.firstCell[k].xyz;
+  int axis = lean.x >= lean.y && lean.x >= lean.z ? 0 : lean.y >= lean.z ? 1 : 2,
+      face = faceOf(axis, surface.normal[axis]), slot = slotOf(k, face, cell);
+  if (work.wanted >= cache.capacity || atomicCompSwap(slots[slot], 0u, CACHE_CLAIMED) != 0u) return;
+  uint index = atomicAdd(work.wanted, 1u);
+  slots[slot] = index < cache.capacity ? index + 1u : 0u;
+  if (index >= cache.capacity) return;
+  atomicMax(work.allGroupsX, index / uint(CACHE_LANES) + 1u);
+  records[index] = CacheRecord(ivec4(cell, k * CACHE_FACES + face), triangle,
+                               CACHE_FIRST | (surface.front ? CACHE_FRONT : 0u), keptBarycentrics.x, keptBarycentrics.y,
+                               vec3(0.0), 0u, position, cache.frame, surface.normal, 0u, vec3(0.0), 0.0);
+}
+#endif
+
 // Radiance that reaches the record along one cosine-weighted path; irradiance is pi times its mean.
 vec3 followPath(Surface surface, uint triangle, PathNumbers numbers) {
   vec3 radiance = vec3(0.0), throughput = vec3(1.0);
@@ -199,6 +237,16 @@ vec3 followPath(Surface surface, uint triangle, PathNumbers numbers) {
       arrives = false;
       ++scatterings;
       bool cached = false;
+#if KEEPS
+      if (scatterings == 2u) {
+        kept.slot = standsFor(surface.position + cache.rayOrigin, surface.normal);
+        kept.reflectance = packColour(throughput);
+        kept.t = sqrt(before2);
+        if (kept.slot != 0u) break;
+        kept.slot = CACHE_FAR;
+        claimFor(surface, triangle);
+      }
+#endif
 #if CACHED
       if (scatterings > 1u) {
         vec3 kept = cachedIrradiance(surface.position + cache.rayOrigin, surface.normal, cached);
@@ -287,6 +335,9 @@ vec3 followPath(Surface surface, uint triangle, PathNumbers numbers) {
     surface = surfaceAt(hit.triangle, hit.barycentrics, ray.direction);
     triangle = hit.triangle;
     before2 = hit.t * hit.t;
+#if KEEPS
+    keptBarycentrics = hit.barycentrics;
+#endif
 #if EMISSION
     if (counts(scatterings)) {
       vec3 emission = emissionAt(surface.material, hit.triangle, hit.barycentrics);
@@ -308,6 +359,20 @@ vec3 followPath(Surface surface, uint triangle, PathNumbers numbers) {
   return radiance;
 }
 
+#if KEEPS
+void main() {
+  uint place = (firstGroup + gl_WorkGroupID.x) * uint(CACHE_LANES) + gl_LocalInvocationID.x;
+  if (place >= min(work.waiting, uint(lit.length()))) return;
+  uint path = lit[place];
+  if (path == CACHE_HOLE) return;
+  CacheRecord record = records[path / uint(CACHE_HITS)];
+  kept = CacheHit(0u, 0u, 0u, 3e38);
+  vec3 light = followPath(surfaceOf(record), record.triangle,
+                          PathNumbers(pcg4d(uvec4(record.cell)).x, path % uint(CACHE_HITS), tracer.seed));
+  kept.light = packColour(light / cacheUnit());
+  hits[path] = kept;
+}
+#else
 void main() {
   uint lane = gl_LocalInvocationID.x,
        place = ((firstGroup + gl_WorkGroupID.x) * uint(CACHE_LANES) + lane) / uint(PATHS);
@@ -330,3 +395,4 @@ void main() {
   records[index].irradiance = record.irradiance + (kPi * sum - float(PATHS) * record.irradiance) / float(paths);
   records[index].paths = paths;
 }
+#endif

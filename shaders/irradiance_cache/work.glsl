@@ -6,6 +6,7 @@ struct CacheWork {
   uint waiting;  // records that still lack paths; those beyond the dispatch wait for the next one
   uint frame;
   uint litGroups[3 * CACHE_PARTS];
+  uint traced;  // paths to be traced again in the last frame in which the scene moved
 };
 
 // The weight in lookups of a record that has faded in. At least a quarter: times 1/8, the least share of a point's

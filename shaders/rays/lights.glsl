@@ -24,10 +24,8 @@ uint pick(uvec4 words) {
   return unitFloat(words.y) >= lights[i].threshold ? lights[i].alias : i;
 }
 
-// xi: position on the light; words: select the light. False: the selected light does not reach the point.
-bool sampleLight(vec3 position, vec2 xi, uvec4 words, out LightSample light) {
-  pickedLight = pick(words);
-  PathLight source = lights[pickedLight];
+// xi: position on the light; words: on the environment. False: that light does not reach the point.
+bool sampleOf(PathLight source, vec3 position, vec2 xi, uvec4 words, out LightSample light) {
   light = LightSample(vec3(0.0), 0.0, vec3(0.0), source.a, false);
   bool reaches = false;
 #if EMISSION
@@ -92,5 +90,12 @@ bool sampleLight(vec3 position, vec2 xi, uvec4 words, out LightSample light) {
   }
 #endif
   return reaches;
+}
+
+// words: select the light.
+bool sampleLight(vec3 position, vec2 xi, uvec4 words, out LightSample light) {
+  pickedLight = pick(words);
+  PathLight source = lights[pickedLight];
+  return sampleOf(source, position, xi, words, light);
 }
 #endif

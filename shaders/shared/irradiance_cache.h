@@ -21,6 +21,9 @@ SHARED_BEGIN
 #define CACHE_WORK_BUFFER 5
 #define CACHE_LINKS_BUFFER 6
 #define CACHE_BOUNCED_BUFFER 7
+#define CACHE_HITS_BUFFER 6
+#define CACHE_HITS_BEFORE_BUFFER 7
+#define CACHE_SLOTS_OF_PATHS_BUFFER 7
 
 // Texture units; where rays are traced, 0 has the materials
 #define UNIT_CACHE_KEYS 1
@@ -31,6 +34,8 @@ SHARED_BEGIN
 #define UNIT_CACHE_BOUNCED 9
 #define UNIT_CACHE_MAP 10  // and the next two: with rays, the texture atlas has the usual ones
 #define UNIT_CACHE_BOUNCE_PLACES 13
+#define UNIT_CACHE_LIGHT 8
+#define UNIT_CACHE_MOVED 9
 
 #define CACHE_FACES 6           // per cell: 2 * axis + (1 if the normal points down the axis)
 #define CACHE_UNPLACED 0xffffffffu  // a record's triangle before its pixel's ray was traced
@@ -46,6 +51,17 @@ SHARED_BEGIN
 #define CACHE_FIRST 2u
 #define CACHE_ALONE 4u  // of a point that keeps light of further bounces: it lights no other surface
 #define CACHE_BRIGHT 8u
+#define CACHE_KEPT 16u   // what its paths hit is kept: CacheHit
+
+// What a path has hit
+#define CACHE_HITS 64        // paths of a record whose hits are kept
+#define CACHE_KEEPING 16384  // records that keep their hits, at most
+#define CACHE_MOST_LAMPS 16  // sun and lamps
+#define CACHE_FAR 0x40000000u    // in CacheHit::slot: its light goes further than to a record; traced in each frame
+#define CACHE_STALE 0x80000000u  // to be traced anew, when the budget allows
+#define CACHE_SLOT_MASK 0x3fffffffu
+#define CACHE_CLAIMED 0xffffffffu  // in a slot, until its record's number is known
+#define CACHE_HOLE 0xffffffffu   // in the list of paths to be traced
 
 struct CacheRecord {
   ivec4 cell;           // cell of its cascade, counted from the origin; w: cascade * CACHE_FACES + face
@@ -62,6 +78,14 @@ struct CacheRecord {
   uint pixel;           // the pixel that created it
   vec3 shown;           // irradiance used by lookups: follows `irradiance` and that of its neighbours at a bounded rate
   float blendWeight;       // its weight in lookups: has faded in, and shows its target, where it is fullBlendWeight()
+};
+
+// A path of a record in a scene that moves, as far as it is kept. Colours: packColour.
+struct CacheHit {
+  uint slot;            // 1 + that of the record that stands for the surface it hits, or 0: none
+  uint reflectance;     // of that surface
+  uint light;           // all other light of this path: radiance, over cacheUnit()
+  float t;              // distance of the hit
 };
 
 struct PrefetchPoint {

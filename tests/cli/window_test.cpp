@@ -484,6 +484,19 @@ TEST_F(Window, TheReferenceComesWhileTheCameraRests) {
   EXPECT_FALSE(fs::is_empty(path("references")));
 }
 
+// A scene that moves has no reference of now and no error, also where it had both while its time was held.
+TEST_F(Window, TheReferenceIsMovingWhileTheTimeRuns) {
+  write("room.json", R"({"model": "room.obj", "environment": null,
+      "sun": {"direction": {"times": [0, 60], "values": [[0, -1, 0.1], [1, -1, 0]]}, "irradiance": [3, 3, 3]}})");
+  for (const bool holds : {false, true}) {
+    write("input.txt", std::string("1 key R\n2 key T\n3 key P\n") + (holds ? "" : "80 key P\n") + "90 key F2\n");
+    const RunResult result = play(path("input.txt"), "--technique direct", "", "32x18");
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    const auto reference = json().at("window").value("reference", nlohmann::json::object());
+    EXPECT_EQ(reference.contains("a"), holds) << reference;
+  }
+}
+
 // Errors have a colour scale in the picture, from blue over white to red; it is drawn by the colours of the errors.
 TEST_F(Window, ErrorsHaveAColourScaleInThePicture) {
   write(

@@ -5,6 +5,7 @@
 #include "base/files.hpp"
 #include "base/log.hpp"
 #include "base/statistics.hpp"
+#include "gl/live_objects.hpp"
 #include "gl/pass.hpp"
 #include "gl/read_back.hpp"
 #include "gl/time_query.hpp"
@@ -1007,6 +1008,16 @@ TEST_F(GlSharedStructs, CacheBlockAndBuffer) {
   EXPECT_OFFSET(blendWeight);
 #undef EXPECT_OFFSET
   EXPECT_EQ(property("before[0].cell", GL_TOP_LEVEL_ARRAY_STRIDE), static_cast<GLint>(sizeof(CacheRecord)));
+}
+
+// Mesa gives names that rise for ever: 10,000 frames that make and delete some objects each reach 65536.
+TEST_F(GlObjects, AreCountedWhateverTheirNames) {
+  std::vector<GLuint> names(70000);
+  glGenBuffers(static_cast<GLsizei>(names.size()), names.data());
+  glDeleteBuffers(static_cast<GLsizei>(names.size()), names.data());
+  const std::size_t before = gl::countLiveObjects();
+  const gl::Buffer buffer("late", 16, nullptr, gl::Usage::staticDraw);
+  EXPECT_EQ(gl::countLiveObjects(), before + 1);
 }
 
 }  // namespace

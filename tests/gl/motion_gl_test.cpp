@@ -1,12 +1,15 @@
 // Scenes that move, in every technique: a renderer that follows the scene draws what a new one would, whatever it has
 // drawn before; lights and surfaces are where the time says.
 #include "base/data.hpp"
+#include "irradiance_cache/irradiance_cache_frame.hpp"
 #include "render/renderer.hpp"
 #include "render/techniques.hpp"
 #include "scene/motion.hpp"
+#include "shared/irradiance_cache.h"
 #include "support/gl_fixture.hpp"
 #include "support/temp_folder.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -172,6 +175,110 @@ TEST_F(MotionGl, ALiveFrameAfterACutShowsTheLightOfItsTime) {
   live.render(camera);
   const Image found = live.readRadiance(), right = anew(still, settings);
   EXPECT_LT(wrongShare(found, right), 0.04);
+}
+
+// A closed room of 2 units with an emissive ceiling, a lamp that moves, and a card that moves by the last key.
+class KeptHitsGl : public MotionGl {
+ protected:
+  /// The card's half size and its height; strengths of ceiling and lamp.
+  std::filesystem::path room(double half, double height, double emission, double intensity) {
+    std::string model = "mtllib m.mtl\n";
+    for (int k = 0; k < 8; ++k) model += fmt::format("v {} {} {}\n", k & 1 ? 1 : -1, k & 2 ? 2 : 0, k & 4 ? 1 : -1);
+    for (int k = 0; k < 4; ++k)
+      model += fmt::format("v {} {} {}\n", k == 1 || k == 2 ? half : -half, height, k < 2 ? -half : half);
+    folder_.write("m.obj", model +
+                               "usemtl white\no room\nf 5 6 2 1\nf 1 2 4 3\nf 5 7 8 6\nf 1 3 7 5\nf 2 6 8 4\n"
+                               "usemtl lamp\no ceiling\nf 3 4 8 7\nusemtl white\no card\nf 12 11 10 9\n");
+    folder_.write("m.mtl",
+                  fmt::format("newmtl white\nKd 0.5 0.5 0.5\nnewmtl lamp\nKd 0 0 0\nKe {0} {0} {0}\n", emission));
+    const std::string lamp = fmt::format(R"("intensity": [{0}, {0}, {0}])", intensity);
+    return folder_.write("s.json", R"({"model": "m.obj", "environment": null, "sun": null,
+        "camera": {"position": [0, 1, 0.9], "direction": [0, -0.2, -1], "up": [0, 1, 0], "fov": 90},
+        "points": [{"position": {"times": [0, 8], "values": [[-0.5, 1, 0], [0.5, 1, 0]]}, )" +
+                                       lamp + R"(}],
+        "objects": {"card": {"translation": {"times": [0, 8, 9], "values": [[0, 0, 0], [0, 0, 0], [0, 0, 0.45]]}}}})");
+  }
+  RenderSettings settings() const {
+    RenderSettings result = settingsOf("irradiance-cache");
+    result.of<IrradianceCacheSettings>().cascades.cells = 8;
+    return result;
+  }
+  /// Draws one frame at a time and returns how many paths were traced again.
+  std::uint64_t tracedAt(Renderer& live, Scene& scene, double seconds) {
+    EXPECT_TRUE(live.follow(context(), programs(), scene, poseAt(scene, seconds)));
+    live.render(scene.cameras.front());
+    live.drain();
+    return cacheOf(live.technique())->counts().traced;
+  }
+  test::TempFolder folder_;
+};
+
+TEST_F(KeptHitsGl, RelightRecordsWhereALampAloneMoves) {
+  const auto file = room(0.1, 0.3, 0.2, 1.0);
+  Scene scene = loadScene(file);
+  Renderer live(context(), programs(), scene, settings());
+  live.renderToTheEnd(scene.cameras.front());
+  const Image before = live.readRadiance();
+  EXPECT_GT(tracedAt(live, scene, 1.0), 0u);
+  for (const double t : {1.5, 2.0, 2.5, 3.0, 4.0, 5.0}) tracedAt(live, scene, t);
+  for (const double t : {6.0, 7.0}) {
+    EXPECT_EQ(tracedAt(live, scene, t), 0u) << t;  // a record stands for all that paths hit
+    const Image found = live.readRadiance(), right = anew(loadScene(file, t), settings());
+    EXPECT_LT(wrongShare(found, right), 0.04) << t;
+    EXPECT_GT(wrongShare(before, right), 0.2) << t;
+  }
+}
+
+// As right as records whose paths are all traced in each frame.
+TEST_F(KeptHitsGl, AreTracedAgainWhereTheyMeetWhatMoves) {
+  const auto file = room(0.2, 1.0, 1.0, 0.02);
+  Scene scene = loadScene(file), other = loadScene(file);
+  RenderSettings kept = settings();
+  kept.of<IrradianceCacheSettings>().cascades.cells = 24;
+  RenderSettings traced = kept;
+  traced.of<IrradianceCacheSettings>().keepsHits = false;
+  Renderer live(context(), programs(), scene, kept), anewEachFrame(context(), programs(), other, traced);
+  live.renderToTheEnd(scene.cameras.front());
+  anewEachFrame.renderToTheEnd(other.cameras.front());
+  for (const double t : {7.0, 7.2, 7.4, 7.6, 7.8, 8.0}) tracedAt(live, scene, t), tracedAt(anewEachFrame, other, t);
+  ASSERT_EQ(cacheOf(live.technique())->counts().traced, 0u);
+  for (const double t : {8.3, 8.6, 9.0}) {
+    const std::uint64_t again = tracedAt(live, scene, t),
+                        all = cacheOf(live.technique())->counts().records * CACHE_HITS;
+    EXPECT_GT(again, all / 40) << t;  // those of new records alone are a third of that
+    EXPECT_LT(again, all / 10) << t;
+    tracedAt(anewEachFrame, other, t);
+    const Image right = anew(loadScene(file, t), kept);
+    const double error = wrongShare(live.readRadiance(), right);
+    EXPECT_LT(error, 1.25 * wrongShare(anewEachFrame.readRadiance(), right)) << t;
+  }
+}
+
+TEST_F(KeptHitsGl, WaitWhereTheBudgetIsSpent) {
+  const auto file = room(0.5, 1.6, 1.0, 0.02);
+  Scene scene = loadScene(file);
+  RenderSettings budget = settings();
+  budget.of<IrradianceCacheSettings>().tracedPaths = 100;
+  Renderer live(context(), programs(), scene, budget);
+  live.renderToTheEnd(scene.cameras.front());
+  /// Frames in which the lamp alone moves, until no path waits.
+  const auto framesToRest = [&](double seconds) {
+    int frames = 0;
+    do
+      (*scene.motion)[SceneMotion::Part::points] = [frames](Scene& posed, double) {
+        posed.points[0].position.x = frames % 2 == 0 ? 0.4 : 0.5;
+      };
+    while (tracedAt(live, scene, seconds) > 0 && ++frames < 200);
+    return frames;
+  };
+  EXPECT_LT(framesToRest(7.9), 200);
+  const std::uint64_t listed = tracedAt(live, scene, 9.0);  // the card moves
+  (*scene.motion)[SceneMotion::Part::points] = [](Scene& posed, double) { posed.points[0].position.x = 0.3; };
+  const std::uint64_t waiting = tracedAt(live, scene, 9.0);
+  ASSERT_GT(waiting, listed / 2);
+  const int frames = framesToRest(9.0);
+  EXPECT_GT(frames, static_cast<int>(waiting / 200));
+  EXPECT_LT(frames, 200);
 }
 
 }  // namespace

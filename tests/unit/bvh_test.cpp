@@ -247,6 +247,26 @@ TEST(BvhBuild, FollowsMeshesThatMove) {
   }
 }
 
+TEST(BvhBuild, MovingMeshesHaveSubtreesOfTheirOwn) {
+  Scene scene = soupInMeshes();
+  for (const std::size_t mesh : {3u, 7u})
+    moveMesh(scene, mesh, glm::vec3(8.0f - 2.0f * static_cast<float>(mesh), 0, 0));
+  const BvhSettings apart{.splitBudget = 0.3, .moving = {3, 7}};  // both begin amid mesh 4
+  Bvh bvh = buildBvh(scene, apart);
+  BvhRefit refit(bvh, scene);
+  const auto decoded = [&] { return decode(buildBvh(scene, {.splitBudget = 0.0, .moving = {3, 7}})); };
+  EXPECT_EQ(decoded().outside, 0);
+  EXPECT_EQ(decoded().triangles.size(), 2000u);
+  for (int step = 0; step < 20; ++step)
+    for (const std::size_t mesh : {3u, 7u}) {
+      moveMesh(scene, mesh, glm::vec3(0.5f, 0.0f, mesh == 3 ? 0.2f : -0.2f));
+      BvhRefit::Changed changed;
+      ASSERT_TRUE(refit.refit(bvh, scene, std::array{mesh}, changed)) << step;  // though it crosses all the others
+      ASSERT_EQ(changed.triangles.size(), 200u);  // each once: no split
+      EXPECT_LT(changed.nodes.size(), 60u);  // of about 200
+    }
+}
+
 TEST(BvhBuild, KnowsWhatEmitsNow) {
   Scene scene = soupInMeshes();
   scene.materials.push_back(scene.materials.front());

@@ -381,5 +381,44 @@ TEST(GltfMotion, BrokenAnimationsAreNamedAndWhatIsNotPlayedIsSaid) {
   EXPECT_TRUE(contains(loggedWarnings()[0], "a second animation of the translation of node 0"));
 }
 
+TEST(GltfMotion, PointersMoveNodesMaterialsAndLights) {
+  Gltf gltf;
+  const auto point = [&](const std::string& pointer, int output) {
+    animate(gltf, 0, "pointer", output);
+    nlohmann::json& target = gltf.root["animations"][0]["channels"].back()["target"];
+    target.erase("node");
+    target["extensions"]["KHR_animation_pointer"]["pointer"] = pointer;
+  };
+  gltf.root["nodes"] = {{{"mesh", 0}}, {{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}}};
+  gltf.root["scenes"][0]["nodes"] = {0, 1};
+  gltf.root["extensionsUsed"] = {"KHR_lights_punctual", "KHR_animation_pointer"};
+  gltf.root["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"intensity", 0}}};
+  gltf.root["materials"] = {{{"name", "m"}, {"pbrMetallicRoughness", {{"metallicFactor", 0}}}}};
+  gltf.primitive()["material"] = 0;
+  point("/nodes/0/translation", gltf.floats({0, 0, 0, 2, 0, 0}, "VEC3"));
+  point("/extensions/KHR_lights_punctual/lights/0/intensity", gltf.floats({0, 8}, "SCALAR"));
+  point("/extensions/KHR_lights_punctual/lights/0/color", gltf.floats({1, 1, 1, 1, 0.5f, 0}, "VEC3"));
+  point("/materials/0/pbrMetallicRoughness/baseColorFactor", gltf.floats({1, 1, 1, 1, 0, 0.5f, 1, 1}, "VEC4"));
+  point("/materials/0/pbrMetallicRoughness/roughnessFactor", gltf.floats({1, 0}, "SCALAR"));
+  point("/materials/0/emissiveFactor", gltf.floats({0, 0, 0, 1, 0, 0}, "VEC3"));
+  point("/materials/0/extensions/KHR_materials_emissive_strength/emissiveStrength", gltf.floats({1, 3}, "SCALAR"));
+  point("/materials/0/alphaCutoff", gltf.floats({0, 1}, "SCALAR"));
+  point("/materials/4/emissiveFactor", gltf.floats({0, 0, 0, 1, 0, 0}, "VEC3"));
+  Scene scene = gltf.load();
+  ASSERT_EQ(loggedWarnings().size(), 1u);
+  EXPECT_TRUE(contains(loggedWarnings()[0], "'/materials/0/alphaCutoff', '/materials/4/emissiveFactor' is not played"))
+      << loggedWarnings()[0];
+  ASSERT_EQ(scene.points.size(), 1u);
+  EXPECT_EQ(scene.points[0].intensity, glm::vec3(0.0f));
+  EXPECT_EQ(scene.materials[0].emission, glm::vec3(0.0f));
+  const SceneChange change = poseAt(scene, 1.0);
+  EXPECT_TRUE(change.lamps && change.materials && change.meshes.size() == 1);
+  expectCorners(scene, {{1, 0, 0}, {2, 0, 0}, {1, 1, 0}});
+  EXPECT_LT(glm::distance(scene.points[0].intensity, glm::vec3(4, 3, 2)), 1e-6f);
+  EXPECT_LT(glm::distance(scene.materials[0].diffuse, glm::vec3(0.5f, 0.75f, 1.0f)), 1e-6f);
+  EXPECT_FLOAT_EQ(scene.materials[0].roughness, 0.25f);  // GGX's alpha, the square
+  EXPECT_LT(glm::distance(scene.materials[0].emission, glm::vec3(1, 0, 0)), 1e-6f);  // 0.5 of strength 2
+}
+
 }  // namespace
 }  // namespace lucerna
