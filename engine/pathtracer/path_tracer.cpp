@@ -524,7 +524,7 @@ bool PathTracer::seeksByManifolds() const {
 int PathTracer::lightCandidates() const {
   constexpr int kCandidates = 2;
   const bool hasChoice = scene_->lightCount() > 1 || features_.emission || features_.environmentPicture;
-  return hasChoice && settings_.deviations == PathDeviations{} ? kCandidates : 1;
+  return scene_->hasLights() && hasChoice && settings_.deviations == PathDeviations{} ? kCandidates : 1;
 }
 
 bool PathTracer::knowsVisibility() const {

@@ -134,7 +134,7 @@ TEST_F(Check, AWrongReferenceIsAWrongPicture) {
 // Light that lacks 1 %: over the whole picture it shows.
 TEST_F(Check, AWrongShaderIsAWrongPicture) {
   const FaultyShaders shaders;
-  shaders.plant("forward/surface.glsl", "albedo / kPi", "albedo / 3.173");
+  shaders.plant("lib/coat_reflection.glsl", "albedo / kPi", "albedo / 3.173");
   const RunResult result =
       check("--only pictures/direct-atrium", fmt::format("LUCERNA_SHADERS='{}'", shaders.path().string()));
   EXPECT_EQ(result.exitCode, 1) << result.err;

@@ -123,6 +123,9 @@ TEST_F(LightChoice, WhatASceneDoesNotNeedIsNotThere) {
   EXPECT_TRUE(lightsOf(underRoof(1.0f, 1.0f), sized(8)));
   EXPECT_FALSE(lightsOf(underRoof(1.0f, 0.0f), sized(8)));
   EXPECT_FALSE(lightsOf(underRoof(0.0f, 1.0f), sized(8)));
+  PathTracer::Settings unsampled = sized(8);
+  unsampled.nextEvent = false;
+  EXPECT_FALSE(lightsOf(underRoof(1.0f, 1.0f), unsampled));
   PathTracer::Settings published = sized(8);
   published.deviations.linearSeeds = true;
   EXPECT_FALSE(lightsOf(underRoof(1.0f, 1.0f), published));
