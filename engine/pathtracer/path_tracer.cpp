@@ -146,6 +146,7 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
   if (settings.diffuseOnly)
     features_.mirrors = features_.conductors = features_.dielectrics = features_.roughDielectrics = false;
 
+  // The scene: boundaries, lamps, media.
   boundaries_ = rankBoundaries(scene, settings.diffuseOnly);
   touching_ = boundariesMayTouch(scene, boundaries_);
   lampsOutside_ =
@@ -185,6 +186,7 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
       densities_ = storageOf("path densities", packed.densities, capabilities);
     }
   }
+  // What is constant over the picture.
   static_assert(kFilterNodes == 4 * std::extent_v<decltype(constants_.filterQuantiles)>);
   if (settings.filter != PixelFilter::centre && settings.filter != PixelFilter::box) {
     const auto quantiles = filterQuantiles(settings.filter);
