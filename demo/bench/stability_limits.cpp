@@ -303,6 +303,50 @@ void addReach(std::vector<StabilityCase>& cases) {
                      }});
 }
 
+/// A closed room with a lamp of 4 cm `below` its ceiling, whose bright spot is smaller than the cells of records.
+Scene spotOnCeiling(double halfSide, double below) {
+  SceneParts parts("spot");
+  const int wall = parts.material(glm::vec3(0.6f));
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double side : {-halfSide, halfSide}) {
+      glm::dvec3 centre(0.0), u(0.0), v(0.0);
+      centre[axis] = side;
+      u[(axis + 1) % 3] = v[(axis + 2) % 3] = 2.0 * halfSide;
+      parts.plate(centre, side < 0.0 ? u : v, side < 0.0 ? v : u, wall);
+    }
+  parts.plate({0, halfSide - below, 0}, {0.04, 0, 0}, {0, 0, 0.04}, parts.material(glm::vec3(0.0f), glm::vec3(400.0f)));
+  parts.scene().cameras.push_back(
+      limitsCamera(halfSide * glm::dvec3(0.9, -0.2, 0.9), halfSide * glm::dvec3(-0.5, 0.25, -0.5), 1.309));
+  return std::move(parts.scene());
+}
+
+/// Of what is lit by the ceiling's bright spot: the lower rows of a picture in which the spot is, too.
+void addSmallLamps(std::vector<StabilityCase>& cases) {
+  for (const glm::dvec2& room : {glm::dvec2(2.0, 0.1), glm::dvec2(1.0, 0.02)})
+    cases.push_back({"irradiance-cache", "rays: a lamp of 4 cm below a ceiling: all light over direct and indirect",
+                     fmt::format("{:g} cm below, room of {:g} m", 100.0 * room.y, 2.0 * room.x),
+                     [room](const StabilityContext& c) {
+                       const Scene scene = spotOnCeiling(room.x, room.y);
+                       const auto floor = [&](Component component) {
+                         RenderSettings settings;
+                         settings.technique = "irradiance-cache";
+                         settings.component = component;
+                         settings.size = {32, 32};
+                         settings.fullFloatTarget = true;
+                         settings.of<IrradianceCacheSettings>().samples = 2048;
+                         Renderer renderer(c.context, c.programs, scene, settings);
+                         renderer.renderToTheEnd(scene.cameras.front());
+                         const Image picture = renderer.readRadiance();
+                         double sum = 0.0;
+                         for (int y = 20; y < 32; ++y)
+                           for (int x = 0; x < 32; ++x) sum += static_cast<double>(picture.at(x, y).x);
+                         return sum;
+                       };
+                       return Measurement{
+                           1.0, floor(Component::all) / (floor(Component::direct) + floor(Component::indirect)), 0.03};
+                     }});
+}
+
 /// A dark floor under a coat and a lamp, whose highlight is in the picture.
 void addCoat(std::vector<StabilityCase>& cases) {
   for (const char* technique : {"direct", "radiosity"})
@@ -417,6 +461,7 @@ void addLimitCases(std::vector<StabilityCase>& cases) {
                      }});
   addBeyondHalfFloats(cases);
   addReach(cases);
+  addSmallLamps(cases);
   addAsPublished(cases);
   addCoat(cases);
   cases.push_back({"radiosity", "a lamp whose picture is one white texel of 3 x 3", "1.5 x 1.5, 0.4 above",
