@@ -288,12 +288,14 @@ gl::ShaderFlags Renderer::shadowFlags() const {
   const int spots = hasMaps && localLights_ ? static_cast<int>(spots_.size()) : 0,
             points = hasMaps && localLights_ ? static_cast<int>(points_.size()) : 0;
   const bool softSpots = spots > 0 && localLights_->areSpotsSoft(),
-             softPoints = points > 0 && localLights_->arePointsSoft(), softSun = sunHasPenumbra();
+             softPoints = points > 0 && localLights_->arePointsSoft(),
+             hasPenumbrae =
+                 sunHasPenumbra() || (settings_.shadow.filter == ShadowFilter::pcss && (softSpots || softPoints));
   return {{"SUN", hasMaps ? sunShadow_.has_value() : shadowRays_ && features_.directionalLight},
           {"SUN_BY_RAYS", !hasMaps && shadowRays_ && features_.directionalLight},
           {"SUN_CASCADES", sunShadow_ ? sunShadow_->cascades() : 0},
           {"SHADOW_MAPS", hasMaps && (sunShadow_ || spots + points > 0)},
-          {"PENUMBRA_TAPS", softSpots || softPoints || softSun ? settings_.shadow.taps : 0},
+          {"PENUMBRA_TAPS", hasPenumbrae ? settings_.shadow.taps : 0},
           {"SPOTS", spots},
           {"POINTS", points},
           {"SOFT_SPOTS", softSpots ? spots : 0},
