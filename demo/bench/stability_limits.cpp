@@ -303,6 +303,101 @@ void addReach(std::vector<StabilityCase>& cases) {
                      }});
 }
 
+/// A closed room with a lamp of 4 cm `below` its ceiling, whose bright spot is smaller than the cells of records.
+Scene spotOnCeiling(double halfSide, double below) {
+  SceneParts parts("spot");
+  const int wall = parts.material(glm::vec3(0.6f));
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double side : {-halfSide, halfSide}) {
+      glm::dvec3 centre(0.0), u(0.0), v(0.0);
+      centre[axis] = side;
+      u[(axis + 1) % 3] = v[(axis + 2) % 3] = 2.0 * halfSide;
+      parts.plate(centre, side < 0.0 ? u : v, side < 0.0 ? v : u, wall);
+    }
+  parts.plate({0, halfSide - below, 0}, {0.04, 0, 0}, {0, 0, 0.04}, parts.material(glm::vec3(0.0f), glm::vec3(400.0f)));
+  parts.scene().cameras.push_back(
+      limitsCamera(halfSide * glm::dvec3(0.9, -0.2, 0.9), halfSide * glm::dvec3(-0.5, 0.25, -0.5), 1.309));
+  return std::move(parts.scene());
+}
+
+/// Of what is lit by the ceiling's bright spot: the lower rows of a picture in which the spot is, too.
+void addSmallLamps(std::vector<StabilityCase>& cases) {
+  for (const glm::dvec2& room : {glm::dvec2(2.0, 0.1), glm::dvec2(1.0, 0.02)})
+    cases.push_back({"irradiance-cache", "rays: a lamp of 4 cm below a ceiling: all light over direct and indirect",
+                     fmt::format("{:g} cm below, room of {:g} m", 100.0 * room.y, 2.0 * room.x),
+                     [room](const StabilityContext& c) {
+                       const Scene scene = spotOnCeiling(room.x, room.y);
+                       const auto floor = [&](Component component) {
+                         RenderSettings settings;
+                         settings.technique = "irradiance-cache";
+                         settings.component = component;
+                         settings.size = {32, 32};
+                         settings.fullFloatTarget = true;
+                         settings.of<IrradianceCacheSettings>().samples = 2048;
+                         Renderer renderer(c.context, c.programs, scene, settings);
+                         renderer.renderToTheEnd(scene.cameras.front());
+                         const Image picture = renderer.readRadiance();
+                         double sum = 0.0;
+                         for (int y = 20; y < 32; ++y)
+                           for (int x = 0; x < 32; ++x) sum += static_cast<double>(picture.at(x, y).x);
+                         return sum;
+                       };
+                       return Measurement{
+                           1.0, floor(Component::all) / (floor(Component::direct) + floor(Component::indirect)), 0.03};
+                     }});
+}
+
+/// The foot of a box on a floor 100 wide, in the shadow of a lamp 1,000 away: no light.
+void addFarLamp(std::vector<StabilityCase>& cases) {
+  cases.push_back({"direct", "a lamp 1,000 away: light in the shadow at the foot of a box of 1 on a floor of 100",
+                   "map", [](const StabilityContext& c) {
+                     SceneParts parts("foot");
+                     const int grey = parts.material(glm::vec3(0.6f));
+                     parts.plate({0, 0, 0}, {0, 0, 100}, {100, 0, 0}, grey);
+                     parts.box({-0.5, 0, -0.5}, {0.5, 1, 0.5}, grey);
+                     parts.scene().points.push_back({{-700, 600, -300}, glm::vec3(1e6f)});
+                     parts.scene().cameras.push_back(limitsCamera({0.9, 1.2, 1.4}, {0.55, 0, 0.5}, 0.209));
+                     return Measurement{1e-5, limitsPicture(c, parts.scene(), "direct", 1.0), 0.0, Rule::atMost};
+                   }});
+}
+
+/// What stands beside the camera in a scene 13,000 km wide is within the near plane: drawn, or named by a warning.
+void addNearMesh(std::vector<StabilityCase>& cases) {
+  cases.push_back(
+      {"direct", "a floor beside a mesh 1.3e7 away: drawn (1) or named by a warning (1)", "sun",
+       [](const StabilityContext& c) {
+         SceneParts parts("wide");
+         const int grey = parts.material(glm::vec3(0.6f));
+         parts.box({-0.5, 0, -0.5}, {0.5, 1, 0.5}, grey);
+         parts.box({1.3e7, 0, 0}, {1.3e7 + 1, 1, 1}, grey);
+         parts.scene().sun = DirectionalLight{{0.0, -1.0, 0.0}, glm::vec3(1.0f)};
+         parts.scene().cameras.push_back(limitsCamera({2.2, 2.2, 1.5}, {0, 0.5, 0}, 0.7));
+         const std::size_t before = loggedWarnings().size();
+         const bool isDrawn = limitsPicture(c, parts.scene(), "direct", 1.0) > 0.01;
+         return Measurement{1.0, isDrawn ? 1.0 : static_cast<double>(loggedWarnings().size() - before), 0.0};
+       }});
+}
+
+/// A lamp in the picture, whose rim covers pixels in part.
+void addSeenLamp(std::vector<StabilityCase>& cases) {
+  cases.push_back(
+      {"radiosity", "a lamp in the picture: emission and direct light, over paths", "16 samples a pixel",
+       [](const StabilityContext& c) {
+         Scene scene = turned(false, false);
+         scene.cameras = {limitsCamera({0.8, -0.5, 0.85}, {-0.3, 0.4, -0.2}, 1.2217)};
+         RenderSettings settings;
+         settings.technique = "radiosity";
+         settings.component = Component::direct;
+         settings.size = kLimitsSize;
+         settings.pixelSamples = 16;
+         settings.fullFloatTarget = true;
+         settings.of<RadiosityView::Settings>().solution.patches.longestEdge = 0.7;
+         Renderer renderer(c.context, c.programs, scene, settings);
+         renderer.renderToTheEnd(scene.cameras.front());
+         return Measurement{1.0, meanOf(renderer.readRadiance()).x / limitsPath(c, scene, 4096, 1).mean.x, 0.01};
+       }});
+}
+
 /// A dark floor under a coat and a lamp, whose highlight is in the picture.
 void addCoat(std::vector<StabilityCase>& cases) {
   for (const char* technique : {"direct", "radiosity"})
@@ -417,6 +512,10 @@ void addLimitCases(std::vector<StabilityCase>& cases) {
                      }});
   addBeyondHalfFloats(cases);
   addReach(cases);
+  addSmallLamps(cases);
+  addFarLamp(cases);
+  addNearMesh(cases);
+  addSeenLamp(cases);
   addAsPublished(cases);
   addCoat(cases);
   cases.push_back({"radiosity", "a lamp whose picture is one white texel of 3 x 3", "1.5 x 1.5, 0.4 above",

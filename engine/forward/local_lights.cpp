@@ -14,7 +14,10 @@ LocalLights::LocalLights(gl::ProgramLibrary& programs, const GpuScene& scene, co
   CHECK(std::max(spots.size(), points.size()) <= LIGHTS_MAX_SHADOWS, "{} spots, {} points", spots.size(),
         points.size());
   const auto areSoft = [&](const std::vector<LightViews>& lamps) {
-    return settings.penumbrae && std::ranges::any_of(lamps, [](const LightViews& lamp) { return lamp.radius > 0.0; });
+    return std::ranges::any_of(lamps, [&](const LightViews& lamp) {
+      const bool isFar = lamp.isPoint && !lamp.omnidirectional();
+      return isFar || (settings.penumbrae && lamp.radius > 0.0);
+    });
   };
   spotsAreSoft_ = areSoft(spots);
   pointsAreSoft_ = areSoft(points);

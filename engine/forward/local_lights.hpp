@@ -26,7 +26,8 @@ class LocalLights {
               const std::vector<LightViews>& spots, const std::vector<LightViews>& points,
               const std::vector<LightViews>& plain);
 
-  /// Whether any lamp of a kind that has maps has a size, and so a penumbra: all of its kind are filtered alike.
+  /// Whether maps of a kind are compared with the receiver's plane: any lamp has a size, and so a penumbra, or is far
+  /// away, where the offset of receivers would exceed what stands on a wide floor. All of a kind are filtered alike.
   bool areSpotsSoft() const { return spotsAreSoft_; }
   bool arePointsSoft() const { return pointsAreSoft_; }
   bool hasSpots() const { return spotShadows_.has_value(); }

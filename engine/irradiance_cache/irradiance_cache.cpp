@@ -4,6 +4,7 @@
 #include "forward/light_views.hpp"
 #include "gl/pass.hpp"
 #include "gl/chunks.hpp"
+#include "irradiance_cache/small_lamps.hpp"
 #include "rays/light_table.hpp"
 #include "rays/view_rays.hpp"
 #include "shared/bindings.h"
@@ -118,6 +119,7 @@ IrradianceCache::IrradianceCache(gl::ProgramLibrary& programs, const gl::Capabil
                              ? 0xffffu
                              : static_cast<std::uint32_t>(settings.bounces) + 1;
   path_.iterations = capabilities.softwareRenderer ? kSoftwareIterations : kMostIterations;
+  if (cached_) emissiveBodies_ = emissiveBodies(scene, scene_.origin());
 
   const gl::ShaderFlags common = lookupFlags(settings);
   const gl::ShaderFlags& rays = rays_ = rayFlags(lanes);
@@ -172,6 +174,7 @@ bool IrradianceCache::follow(const Scene& scene, const std::vector<Bounds>& move
   if (kept_) kept_->allAnew = kept_->allAnew || !lampsAlone;
   moved_.insert(moved_.end(), moved.begin(), moved.end());
   scene_.fill(path_);
+  if (cached_ && !(lampsAlone && moved.empty())) emissiveBodies_ = emissiveBodies(scene, scene_.origin());
   typicalIrradiance_ = typicalOf(scene);
   prefetchedFrom_.reset();
   followed_ = true;
@@ -197,6 +200,9 @@ void IrradianceCache::place(const Inputs& inputs) {
   const std::size_t pixels = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
   constants.prefetch = inputs.fades ? static_cast<std::uint32_t>(settings_.prefetch) : 0;
   constants.markEvery = static_cast<std::uint32_t>(pixels / (kKeyPixels - constants.prefetch) + 1);
+  constants.smallLamps =
+      static_cast<std::uint32_t>(std::min(emissiveBodies_.size(), std::size_t{CACHE_MOST_SMALL_LAMPS}));
+  std::copy_n(emissiveBodies_.begin(), constants.smallLamps, std::begin(constants.smallLamp));
   constants_.upload(0, sizeof constants, &constants);
 
   setView(path_, inputs.camera, rayOrigin_, size, inputs.offset);

@@ -104,6 +104,7 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
   if (moved_) moved_->textures.clear();  // they are on the GPU now
   makeLights(context, programs, scene);
   warnOfWhatIsLeftOut(technique);
+  warnOfWhatIsCut();
 }
 
 // What depends on the lights and on where surfaces stand; programs are those of the library.
@@ -179,6 +180,31 @@ bool Renderer::follow(const gl::Context& context, gl::ProgramLibrary& programs, 
   environmentView_.reset();
   makeLights(context, programs, scene);
   return true;
+}
+
+// The near plane follows the scene's size, so a part of a scene that is 2000 times as wide would be cut away.
+void Renderer::warnOfWhatIsCut() {
+  const Scene& scene = gpuScene_->scene();
+  if (scene.cameras.empty() || scene.cameras.front().isOrthographic()) return;
+  const glm::dmat4 clip = clipFromWorld(scene.cameras.front(), scene.bounds, settings_.size);
+  const double near = nearPlane(scene.bounds);
+  const auto isCut = [&](std::uint32_t index) {
+    const glm::dvec4 p = clip * glm::dvec4(scene.vertices[index].position, 1.0);
+    return p.w > 0.0 && p.w < near && std::max(std::abs(p.x), std::abs(p.y)) < p.w;
+  };
+  std::vector<std::string> names;
+  for (const Mesh& mesh : scene.meshes)
+    if (std::any_of(scene.indices.begin() + mesh.firstIndex, scene.indices.begin() + mesh.firstIndex + mesh.indexCount,
+                    isCut))
+      names.push_back("'" + scene.materials[static_cast<std::size_t>(mesh.material)].name + "'");
+  std::ranges::sort(names);
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  if (names.empty()) return;
+  warnings_.push_back(
+      fmt::format("{} within {:.3g} of the camera: not drawn, as the scene is {:.3g} wide (technique "
+                  "path draws all)",
+                  fmt::join(names, ", "), near, glm::length(scene.bounds.extent())));
+  logWarning("{}", warnings_.back());
 }
 
 void Renderer::warnOfWhatIsLeftOut(const TechniqueEntry& technique) {
@@ -288,12 +314,14 @@ gl::ShaderFlags Renderer::shadowFlags() const {
   const int spots = hasMaps && localLights_ ? static_cast<int>(spots_.size()) : 0,
             points = hasMaps && localLights_ ? static_cast<int>(points_.size()) : 0;
   const bool softSpots = spots > 0 && localLights_->areSpotsSoft(),
-             softPoints = points > 0 && localLights_->arePointsSoft(), softSun = sunHasPenumbra();
+             softPoints = points > 0 && localLights_->arePointsSoft(),
+             hasPenumbrae =
+                 sunHasPenumbra() || (settings_.shadow.filter == ShadowFilter::pcss && (softSpots || softPoints));
   return {{"SUN", hasMaps ? sunShadow_.has_value() : shadowRays_ && features_.directionalLight},
           {"SUN_BY_RAYS", !hasMaps && shadowRays_ && features_.directionalLight},
           {"SUN_CASCADES", sunShadow_ ? sunShadow_->cascades() : 0},
           {"SHADOW_MAPS", hasMaps && (sunShadow_ || spots + points > 0)},
-          {"PENUMBRA_TAPS", softSpots || softPoints || softSun ? settings_.shadow.taps : 0},
+          {"PENUMBRA_TAPS", hasPenumbrae ? settings_.shadow.taps : 0},
           {"SPOTS", spots},
           {"POINTS", points},
           {"SOFT_SPOTS", softSpots ? spots : 0},

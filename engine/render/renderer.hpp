@@ -132,6 +132,7 @@ class Renderer {
   void addDirectShares(const InspectedTerms& terms, PixelInspection& answer);
   std::span<const GeometryTechnique::Sides> sides() const;
   void warnOfWhatIsLeftOut(const TechniqueEntry& technique);
+  void warnOfWhatIsCut();
   bool showsDirect() const;  ///< direct light of sun or lamps, with shadows
   int rayShadowedLamps() const;  ///< the first of localLights_'s lamps without maps
   bool sunHasPenumbra() const;  ///< in its shadow map

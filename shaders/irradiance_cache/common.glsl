@@ -6,6 +6,8 @@
 #include "shared/irradiance_cache.h"
 layout(std140, binding = BLOCK_CACHE) uniform CacheBlock { CacheConstants cache; };
 
+float cellOfLight;  // size of the cells from which the last lookup took its light
+
 // Unit of the irradiance in the texture: small, since it is stored times a weight that begins at 1 / 8000 (store.comp).
 float cacheUnit() { return grids.referenceIrradiance / 16.0; }
 

@@ -34,7 +34,7 @@ const float kEnough = 1.0 / 32.0, kLeast = 1e-5;
 // found: false if no cascade has any record.
 vec3 cachedIrradiance(vec3 position, vec3 normal, out bool found) {
   vec3 irradiance = vec3(0.0);
-  float left = 1.0, sum = 0.0;
+  float left = 1.0, sum = 0.0, cells = 0.0;
   for (int k = 0; k < grids.shape.y && left > 0.0; ++k) {
     float weight = left * cacheCascadeWeight(k, position);
     if (!(weight > 0.0)) continue;
@@ -42,9 +42,11 @@ vec3 cachedIrradiance(vec3 position, vec3 normal, out bool found) {
     if (!(here.w > kLeast)) continue;
     weight *= min(here.w / kEnough, 1.0);
     irradiance += weight * here.rgb / here.w;
+    cells += weight * grids.cascades[k].cellSize;
     sum += weight;  // not 1 - left, which would cancel for a small weight
     left -= weight;
   }
   found = sum > 0.0;
+  cellOfLight = found ? cells / sum : 0.0;
   return found ? irradiance * (cacheUnit() / sum) : vec3(0.0);
 }

@@ -8,7 +8,7 @@
 // FROM_CELLS, for measurements: instead of the record, the middle of a cell that a lookup at the record would read.
 // What surfaces close to a spot or an omnidirectional lamp reflect is found by rays from the lamp: see isFoundFromLamp.
 // CACHED: where a path's hit lies among records, their irradiance of the previous frame replaces the rest of the
-// path. One bounce per frame thus adds up to all of them; elsewhere the path continues.
+// path. One bounce per frame thus adds up to all of them; elsewhere, and close to a small lamp, the path continues.
 // KEEPS: traces the paths that retrace.comp lists, one per lane, and keeps what they hit (CacheHit) for relight.comp. A
 // path ends at the first surface for which a record stands, whose light holds that of lamps as well.
 layout(local_size_x = 64) in;  // CACHE_LANES; GLSL 4.30 accepts only literals here
@@ -33,6 +33,9 @@ const uint kRaysOfScattering = 2u;
 #endif
 #if CACHED
 #include "irradiance_cache/lookup.glsl"
+#if EMISSION
+#include "irradiance_cache/small_lamps.glsl"
+#endif
 #if KEEPS
 #include "lib/clamped_int.glsl"
 #include "irradiance_cache/kept.glsl"
@@ -242,6 +245,9 @@ vec3 followPath(Surface surface, uint triangle, PathNumbers numbers) {
         kept.slot = standsFor(surface.position + cache.rayOrigin, surface.normal);
         kept.reflectance = packColour(throughput);
         kept.t = sqrt(before2);
+#if EMISSION
+        if (isNearSmallLamp(surface.position, cellOfLight)) kept.slot = 0u;
+#endif
         if (kept.slot != 0u) break;
         kept.slot = CACHE_FAR;
         claimFor(surface, triangle);
@@ -250,7 +256,10 @@ vec3 followPath(Surface surface, uint triangle, PathNumbers numbers) {
 #if CACHED
       if (scatterings > 1u) {
         vec3 kept = cachedIrradiance(surface.position + cache.rayOrigin, surface.normal, cached);
-        radiance += throughput * kept / kPi;
+#if EMISSION
+        if (keepsDirectLight() && isNearSmallLamp(surface.position, cellOfLight)) cached = false;
+#endif
+        if (cached) radiance += throughput * kept / kPi;
         ends = cached;
 #if EMISSION || ENVIRONMENT
         // If records store no direct light of emitters and the sky, this surface lacks it too. One more ray supplies

@@ -21,6 +21,7 @@ uint standsFor(vec3 position, vec3 normal) {
       if (lean[axis] < 0.25) break;
       lean[axis] = 0.0;
       uint slot = uint(slotOf(k, faceOf(axis, normal[axis]), cell));
+      cellOfLight = grids.cascades[k].cellSize;
       if (lightOfSlot(slot).w > 0.0) return slot + 1u;
     }
   }

@@ -46,6 +46,8 @@ SHARED_BEGIN
 #define CACHE_PARTS 10          // of the list of records to be lit: 2^14 groups
 #define CACHE_MOST_OPENING 2048 // iterations of a lane that may open nodes of a light tree
 #define CACHE_MOST_NEAR 12      // texels of a lane that give light by their outline
+#define CACHE_MOST_SMALL_LAMPS 64  // connected emissive surfaces
+#define CACHE_CELLS_NEAR_LAMP 4.0
 #define CACHE_FULL_PATHS 256.0  // from here on: full weight, no averaging with neighbours
 #define CACHE_FRONT 1u
 #define CACHE_FIRST 2u
@@ -111,6 +113,11 @@ struct CacheConstants {
   uint mostSegments;    // maximum per path
   uint markEvery;       // pixel stride, for pictures with more pixels than a key can tell apart
   uint prefetch;        // points around the camera that need records too
+  uint smallLamps;      // how many of these there are
+  uint padding0;
+  uint padding1;
+  uint padding2;
+  vec4 smallLamp[CACHE_MOST_SMALL_LAMPS];  // balls around them, in the ray caster's coordinates; w: radius
 };
 
 SHARED_END

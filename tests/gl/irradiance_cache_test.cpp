@@ -813,6 +813,30 @@ TEST_F(IrradianceCacheGl, ComponentsAddUp) {
   }
 }
 
+// A small lamp close to a ceiling lights a spot smaller than a cell. Records around it hold too little or too much.
+TEST_F(IrradianceCacheGl, ASmallLampCloseToACeilingLightsTheRestAsItsPartsDo) {
+  SceneBuilder builder;
+  builder.scene().sun.reset();
+  test::addBox(builder, 1.0, builder.material(glm::vec3(0.6f)), true);
+  const int lamp = builder.material(glm::vec3(0.0f));
+  builder.materialAt(lamp).emission = glm::vec3(400.0f);
+  builder.plate({0, 0.98, 0}, {0.04, 0, 0}, {0, 0, 0.04}, lamp);
+  const Camera camera = lookingAt({0.9, -0.2, 0.9}, {-0.5, 0.25, -0.5}, 1.3);
+  const auto ofLowerRows = [&](Component component) {
+    RenderSettings s = settings(kAll, 1024, component, 32);
+    s.of<IrradianceCacheSettings>().cascades.cells = 32;
+    const Image seen = picture(builder.scene(), camera, s).image;
+    double sum = 0.0;
+    for (int y = 20; y < 32; ++y)
+      for (int x = 0; x < 32; ++x) sum += static_cast<double>(seen.at(x, y).x);
+    return sum;
+  };
+  const double ratio =
+      ofLowerRows(Component::all) / (ofLowerRows(Component::direct) + ofLowerRows(Component::indirect));
+  report("a small lamp close to a ceiling: all light over its parts", ratio);
+  EXPECT_NEAR(ratio, 1.0, 0.05);
+}
+
 class IrradianceCacheAgainstPaths : public IrradianceCacheGl {
  protected:
   struct Reference {
