@@ -12,7 +12,7 @@ namespace {
 
 constexpr GLuint kPointsBinding = 5, kCountsBinding = 6;  // GL_SHADER_STORAGE_BUFFER
 constexpr GLuint kCountsUnit = 6;
-constexpr int kGroup = 64;
+constexpr int kPointsAGroup = 64;
 
 }  // namespace
 
@@ -64,7 +64,7 @@ LightVisibility::LightVisibility(gl::ProgramLibrary& programs, const Scene& scen
   counts_.buffer().bindStorage(kCountsBinding);
   setCells(program);
   program.set("pointCount", static_cast<int>(points.size()));
-  pass.dispatch(glm::ivec3(static_cast<int>(points.size()), 1, 1), glm::ivec3(kGroup, 1, 1));
+  pass.dispatch(glm::ivec3(static_cast<int>(points.size()), 1, 1), glm::ivec3(kPointsAGroup, 1, 1));
 }
 
 void LightVisibility::setCells(const gl::Program& program) const {
