@@ -1,8 +1,8 @@
 // Adds a frame to the running mean of those before it (engine/forward/antialiasing.hpp).
 // In motion each pixel's surface, the nearest of the pixel's neighbourhood so that edges move with what is before them,
 // is looked for where the frame before showed it. The mean found there is limited to the new frame's own range around
-// the pixel: mean and kDeviations standard deviations of 3x3 pixels [Salvi2016]. All in linear radiance, as a camera adds
-// up light: a mean of colours compressed by brightness is too dark at bright edges.
+// the pixel: mean and kDeviations standard deviations of 3x3 pixels [Salvi2016]. All in linear radiance, as a camera
+// adds up light: a mean of colours compressed by brightness is too dark at bright edges.
 #include "lib/clamped_int.glsl"
 layout(binding = 0) uniform sampler2D radianceTexture;
 layout(binding = 1) uniform sampler2D depthTexture;
