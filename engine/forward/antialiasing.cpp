@@ -11,10 +11,12 @@ namespace lucerna {
 
 namespace {
 constexpr GLuint kRadianceUnit = 0, kDepthUnit = 1, kBeforeUnit = 2, kDistanceBeforeUnit = 3;
-// Frames in the mean. What moves by itself, or is lit anew, is not found where it was. Ten add 2 points to the error of
-// assets/cornell/moving.json (llvmpipe, one run each: 9.0 % for 6.9 % without earlier frames), two nothing (6.8 %):
-// bench dynamic --live --frames 8 --fps 20 --time 1 --size 160x120 --reference-samples 64, irradiance-cache.
-constexpr float kMostInMotion = 10.0f, kMostWhereSceneMoves = 2.0f;
+// Frames in the mean. A mean is read anew in every frame, which blurs it: beyond four that costs more than what more
+// samples give (docs/measurements/forward.md, Antialiasing). What moves by itself, or is lit anew, is not found where
+// it was. Ten added 2 points to the error of assets/cornell/moving.json (llvmpipe, one run each: 9.0 % for 6.9 %
+// without earlier frames), two nothing (6.8 %): bench dynamic --live --frames 8 --fps 20 --time 1 --size 160x120
+// --reference-samples 64, irradiance-cache.
+constexpr float kMostInMotion = 4.0f, kMostWhereSceneMoves = 2.0f;
 }  // namespace
 
 void Antialiasing::resize(glm::ivec2 size) {
@@ -91,7 +93,6 @@ void Antialiasing::accumulate(const Frame& frame, bool moves, bool reprojects, i
   program.set("starts", starts ? 1 : 0);
   program.set("most", static_cast<float>(std::max(most, 1)));
   program.set("mostInMotion", frame.sceneMoves ? kMostWhereSceneMoves : kMostInMotion);
-  program.set("exposure", frame.exposure);
   frame.radiance.bind(kRadianceUnit);
   frame.depth.bind(kDepthUnit);
   history_->radiance[before].bind(kBeforeUnit);

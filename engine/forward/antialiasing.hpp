@@ -34,7 +34,6 @@ class Antialiasing {
     glm::dmat4 clip;  ///< from world, through the pixels' centres
     glm::dvec3 camera;
     glm::dvec2 offset;  ///< of the frame's samples from there, in pixels
-    float exposure;  ///< what is bright for the eye
     bool sceneMoves;  ///< surfaces or lights are others than in the frame before
   };
   /// Adds a frame to the running mean of at most `most` frames. `moves`: the view differs from that of the frame

@@ -578,7 +578,7 @@ void Renderer::showAccumulated(int sample, bool moves) {
   }
   const FrameView centred = viewOf(view_->camera, view_->volumeCamera);
   antialiasing_.accumulate({radiance_, depth_, centred.clip, centred.camera.position,
-                            samples_[static_cast<std::size_t>(sample)], exposure_, sceneMoves},
+                            samples_[static_cast<std::size_t>(sample)], sceneMoves},
                            moves, settings_.reprojection, settings_.pixelSamples, noAttributes_);
   shown_ = &antialiasing_.shown();
 }

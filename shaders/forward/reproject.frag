@@ -1,8 +1,8 @@
 // Adds a frame to the running mean of those before it (engine/forward/antialiasing.hpp).
 // In motion each pixel's surface, the nearest of the pixel's neighbourhood so that edges move with what is before them,
 // is looked for where the frame before showed it. The mean found there is limited to the new frame's own range around
-// the pixel: mean and kDeviations standard deviations of 3x3 pixels [Salvi2016], in colours compressed by brightness
-// [Karis2014], so that one bright sample does not flicker.
+// the pixel: mean and kDeviations standard deviations of 3x3 pixels [Salvi2016]. All in linear radiance, as a camera
+// adds up light: a mean of colours compressed by brightness is too dark at bright edges.
 #include "lib/clamped_int.glsl"
 layout(binding = 0) uniform sampler2D radianceTexture;
 layout(binding = 1) uniform sampler2D depthTexture;
@@ -12,34 +12,27 @@ uniform mat4 beforeFromClip, beforeFromFar;  // from the frame's clip space; far
 uniform vec4 inverseDistance;                // times a place in clip space: 1 over its distance along the view
 uniform vec2 offset;                         // of the frame's samples from pixels' centres, in pixels
 uniform int moves, starts;                   // the view differs from the frame before; there is none before
-uniform float most, mostInMotion, exposure;
+uniform float most, mostInMotion;
 layout(location = 0) out vec4 mean;
 layout(location = 1) out float nearestDistance;  // of 3x3 pixels
 
 const float kDeviations = 1.25;
+const float kSharpness = 0.75;  // 0.5 is Catmull-Rom: blurs more where a mean is read again in every frame
 const float kInfinite = 1e30;
 const float kFarther = 1.02;  // beyond this ratio of distances it is another surface
 
-vec3 compressed(vec3 c) {
-  c *= exposure;
-  return c / (1.0 + max(c.r, max(c.g, c.b)));
-}
-vec3 expanded(vec3 c) { return c / (max(1.0 - max(c.r, max(c.g, c.b)), 1e-4) * exposure); }
-
-// Catmull-Rom over 4x4 texels by nine bilinear taps, of which the corners, with hardly any weight, are left out
-// [Jimenez2016]. Compressed.
+// Cubic convolution of 4x4 texels [Keys1981], by nine bilinear taps, of which the corners, with hardly any weight, are
+// left out [Jimenez2016].
 vec3 before(vec2 uv) { return textureLod(beforeTexture, uv, 0.0).rgb; }
 vec3 cubic(vec2 uv) {
   vec2 size = vec2(textureSize(beforeTexture, 0)), place = uv * size, middle = floor(place - 0.5) + 0.5,
-       f = place - middle;
-  vec2 w0 = f * (-0.5 + f * (1.0 - 0.5 * f)), w1 = 1.0 + f * f * (-2.5 + 1.5 * f),
-       w2 = f * (0.5 + f * (2.0 - 1.5 * f)), w3 = f * f * (-0.5 + 0.5 * f), w12 = w1 + w2;
+       f = place - middle, g = 1.0 - f;
+  vec2 w0 = -kSharpness * f * g * g, w3 = -kSharpness * f * f * g, w12 = 1.0 - w0 - w3,
+       w2 = 1.0 + g * g * ((2.0 - kSharpness) * g - (3.0 - kSharpness));
   vec2 at0 = (middle - 1.0) / size, at12 = (middle + w2 / w12) / size, at3 = (middle + 2.0) / size;
-  vec3 sum = w12.x * w12.y * compressed(before(at12)) +
-             w12.x * w0.y * compressed(before(vec2(at12.x, at0.y))) +
-             w0.x * w12.y * compressed(before(vec2(at0.x, at12.y))) +
-             w3.x * w12.y * compressed(before(vec2(at3.x, at12.y))) +
-             w12.x * w3.y * compressed(before(vec2(at12.x, at3.y)));
+  vec3 sum = w12.x * w12.y * before(at12) + w12.x * w0.y * before(vec2(at12.x, at0.y)) +
+             w0.x * w12.y * before(vec2(at0.x, at12.y)) + w3.x * w12.y * before(vec2(at3.x, at12.y)) +
+             w12.x * w3.y * before(vec2(at12.x, at3.y));
   float weights = w12.x * w12.y + w12.x * (w0.y + w3.y) + w12.y * (w0.x + w3.x);
   return max(sum / weights, vec3(0.0));
 }
@@ -64,7 +57,7 @@ void main() {
         nearest = clip;
       }
       inverseMost = min(inverseMost, inverse);
-      vec3 c = compressed(texelFetch(radianceTexture, place, 0).rgb);
+      vec3 c = texelFetch(radianceTexture, place, 0).rgb;
       sum += c;
       squares += c * c;
     }
@@ -90,8 +83,8 @@ void main() {
   if (distance > kFarther * texelFetch(distanceBeforeTexture, pixelBefore, 0).r + spread) return;
   vec3 middle = sum / 9.0, range = kDeviations * sqrt(max(squares / 9.0 - middle * middle, vec3(0.0)));
   vec3 old = cubic(uv), away = old - middle;
-  vec3 ratios = abs(away) / max(range, vec3(1e-6));
+  vec3 ratios = abs(away) / max(range, vec3(1e-30));
   old = middle + away / max(1.0, max(ratios.r, max(ratios.g, ratios.b)));
   float count = min(texelFetch(beforeTexture, pixelBefore, 0).a + 1.0, mostInMotion);
-  mean = vec4(expanded(mix(old, compressed(radiance), 1.0 / count)), count);
+  mean = vec4(mix(old, radiance, 1.0 / count), count);
 }

@@ -147,7 +147,7 @@ TEST_F(AntialiasingGl, InMotionAnEdgeIsSmoothAndWhereItIs) {
     }
     std::printf("edge in motion, %s: error %.3f, each frame alone %.3f\n",
                 orthographic ? "orthographic" : "perspective", with, without);
-    EXPECT_LT(with, 0.6 * without) << orthographic;
+    EXPECT_LT(with, 0.4 * without) << orthographic;
   }
 }
 
