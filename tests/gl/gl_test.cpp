@@ -974,8 +974,8 @@ TEST_F(GlSharedStructs, CascadeBlock) {
 TEST_F(GlSharedStructs, CacheBlockAndBuffer) {
   using shared::CacheConstants;
   using shared::CacheRecord;
-  const Program& program =
-      programs().loadCompute("keep", "irradiance_cache/keep.comp", {{"GRID_FULL_FLOAT", 0}, {"FOLLOWS", 1}, {"KEEPS", 0}});
+  const Program& program = programs().loadCompute("keep", "irradiance_cache/keep.comp",
+                                                  {{"GRID_FULL_FLOAT", 0}, {"FOLLOWS", 1}, {"KEEPS", 0}});
 #define EXPECT_OFFSET(member) \
   EXPECT_EQ(offsetOf(program, "cache." #member), static_cast<GLint>(offsetof(CacheConstants, member))) << #member
   EXPECT_EQ(offsetOf(program, "cache.firstCell[0]"), static_cast<GLint>(offsetof(CacheConstants, firstCell)));
