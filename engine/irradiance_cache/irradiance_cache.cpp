@@ -200,8 +200,11 @@ void IrradianceCache::place(const Inputs& inputs) {
   const std::size_t pixels = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
   constants.prefetch = inputs.fades ? static_cast<std::uint32_t>(settings_.prefetch) : 0;
   constants.markEvery = static_cast<std::uint32_t>(pixels / (kKeyPixels - constants.prefetch) + 1);
-  constants.smallLamps =
-      static_cast<std::uint32_t>(std::min(emissiveBodies_.size(), std::size_t{CACHE_MOST_SMALL_LAMPS}));
+  // Smaller than the coarsest cell: others are small beside none.
+  const auto last =
+      std::ranges::lower_bound(emissiveBodies_, static_cast<float>(inputs.cascades.back().cellSize), {}, &glm::vec4::w);
+  constants.smallLamps = static_cast<std::uint32_t>(
+      std::min(static_cast<std::size_t>(last - emissiveBodies_.begin()), std::size_t{CACHE_MOST_SMALL_LAMPS}));
   std::copy_n(emissiveBodies_.begin(), constants.smallLamps, std::begin(constants.smallLamp));
   constants_.upload(0, sizeof constants, &constants);
 

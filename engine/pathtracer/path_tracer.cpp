@@ -252,7 +252,7 @@ gl::ShaderFlags PathTracer::flags() const {
                          {"MEDIA", features_.media},
                          {"LAMPS_OUTSIDE", lampsOutside_},
                          {"CANDIDATES", lightCandidates()},
-                         {"LIGHT_VISIBILITY", knowsVisibility()},
+                         {"LIGHT_VISIBILITY", lightVisibility_.has_value()},
                          {"WALKS", features_.denseMedia},
                          {"HETEROGENEOUS", features_.heterogeneousMedia},
                          {"VOLUME_EMISSION", features_.volumeEmission},

@@ -28,14 +28,9 @@ double longestEdgeOf(const Corners& c) {
   return std::max({glm::distance(c[0], c[1]), glm::distance(c[1], c[2]), glm::distance(c[2], c[0])});
 }
 
-struct Box {
-  glm::dvec3 min{1e300}, max{-1e300};
-
-  void add(const glm::dvec3& point) { min = glm::min(min, point), max = glm::max(max, point); }
-  bool overlaps(const Box& other, double slack) const {
-    return glm::all(glm::lessThanEqual(min - slack, other.max)) && glm::all(glm::lessThanEqual(other.min - slack, max));
-  }
-};
+bool areNear(const Bounds& a, const Bounds& b, double slack) {
+  return glm::all(glm::lessThanEqual(a.min - slack, b.max)) && glm::all(glm::lessThanEqual(b.min - slack, a.max));
+}
 
 /// Finds the triangles whose boxes overlap another's: a tree of halves by number.
 class BoxTree {
@@ -43,7 +38,7 @@ class BoxTree {
   explicit BoxTree(const std::vector<Corners>& triangles) : order_(triangles.size()) {
     std::iota(order_.begin(), order_.end(), 0u);
     for (const Corners& corners : triangles) {
-      Box& box = boxes_.emplace_back();
+      Bounds& box = boxes_.emplace_back();
       for (const glm::dvec3& corner : corners) box.add(corner);
     }
     build(0, order_.size());
@@ -56,18 +51,18 @@ class BoxTree {
     while (!open.empty()) {
       const Node& node = nodes_[open.back()];
       open.pop_back();
-      if (!node.box.overlaps(boxes_[i], slack)) continue;
+      if (!areNear(node.box, boxes_[i], slack)) continue;
       if (node.second) open.insert(open.end(), {node.second, node.first});
       else
         for (std::size_t k = node.begin; k < node.end; ++k)
-          if (order_[k] != i && boxes_[order_[k]].overlaps(boxes_[i], slack)) visit(order_[k]);
+          if (order_[k] != i && areNear(boxes_[order_[k]], boxes_[i], slack)) visit(order_[k]);
     }
   }
 
  private:
   static constexpr std::size_t kLeaf = 8;
   struct Node {
-    Box box;
+    Bounds box;
     std::size_t begin, end;  ///< in order_
     std::uint32_t first = 0, second = 0;  ///< nodes; none for leaves
   };
@@ -75,10 +70,10 @@ class BoxTree {
   std::uint32_t build(std::size_t begin, std::size_t end) {
     const auto index = static_cast<std::uint32_t>(nodes_.size());
     Node node{{}, begin, end};
-    for (std::size_t k = begin; k < end; ++k) node.box.add(boxes_[order_[k]].min), node.box.add(boxes_[order_[k]].max);
+    for (std::size_t k = begin; k < end; ++k) node.box.add(boxes_[order_[k]]);
     nodes_.push_back(node);
     if (end - begin <= kLeaf) return index;
-    const glm::dvec3 size = node.box.max - node.box.min;
+    const glm::dvec3 size = node.box.extent();
     const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
     const std::size_t middle = (begin + end) / 2;
     const auto place = [&](std::uint32_t t) { return boxes_[t].min[axis] + boxes_[t].max[axis]; };
@@ -92,7 +87,7 @@ class BoxTree {
     return index;
   }
 
-  std::vector<Box> boxes_;
+  std::vector<Bounds> boxes_;
   std::vector<std::uint32_t> order_;
   std::vector<Node> nodes_;
 };

@@ -187,14 +187,21 @@ void Renderer::warnOfWhatIsCut() {
   const Scene& scene = gpuScene_->scene();
   if (scene.cameras.empty() || scene.cameras.front().isOrthographic()) return;
   const glm::dmat4 clip = clipFromWorld(scene.cameras.front(), scene.bounds, settings_.size);
-  const double near = nearPlane(scene.bounds);
+  const double near = nearPlane(scene.bounds), high = scene.cameras.front().halfHeight(),
+               wide = high * settings_.size.x / settings_.size.y,
+               reach = near * glm::length(glm::dvec3(wide, high, 1.0));
+  const glm::dvec3& eye = scene.cameras.front().position;
+  const auto isNear = [&](const Bounds& box) {
+    return glm::distance(glm::clamp(eye, box.min, box.max), eye) <= 1.01 * reach;
+  };
   const auto isCut = [&](std::uint32_t index) {
     const glm::dvec4 p = clip * glm::dvec4(scene.vertices[index].position, 1.0);
     return p.w > 0.0 && p.w < near && std::max(std::abs(p.x), std::abs(p.y)) < p.w;
   };
   std::vector<std::string> names;
   for (const Mesh& mesh : scene.meshes)
-    if (std::any_of(scene.indices.begin() + mesh.firstIndex, scene.indices.begin() + mesh.firstIndex + mesh.indexCount,
+    if (!mesh.bounds.empty() && isNear(mesh.bounds) &&
+        std::any_of(scene.indices.begin() + mesh.firstIndex, scene.indices.begin() + mesh.firstIndex + mesh.indexCount,
                     isCut))
       names.push_back("'" + scene.materials[static_cast<std::size_t>(mesh.material)].name + "'");
   std::ranges::sort(names);
