@@ -269,17 +269,12 @@ struct Choice {
   const ErrorRow *first, *last;  ///< of the front, by time
 };
 
-/// The front by time, without what is as published, and less what improves the error by less than kWorthwhile. Empty if
+/// The front by time of what is not as published, less what improves the error by less than kWorthwhile. Empty if
 /// nothing was measured.
 std::vector<Choice> choicesOf(const std::vector<ErrorRow>& rows) {
   constexpr double kWorthwhile = 0.1;
-  std::vector<const ErrorRow*> front;
-  for (const ErrorRow& row : rows)
-    if (flag(row, "pareto") && text(row, "fidelity") != "original" && std::isfinite(rankedError(row, "l2")))
-      front.push_back(&row);
-  std::ranges::sort(front, [](const ErrorRow* a, const ErrorRow* b) { return number(*a, "ms") < number(*b, "ms"); });
   std::vector<Choice> choices;
-  for (const ErrorRow* row : front) {
+  for (const ErrorRow* row : correctedFront(rows)) {
     const bool isFirst = choices.empty();
     if (!isFirst && rankedError(*row, "l2") > (1.0 - kWorthwhile) * rankedError(*choices.back().last, "l2")) continue;
     if (isFirst || choices.back().technique != text(*row, "technique"))

@@ -449,6 +449,21 @@ void markFront(std::vector<ErrorRow>& rows) {
   }
 }
 
+std::vector<const ErrorRow*> correctedFront(const std::vector<ErrorRow>& rows) {
+  std::vector<const ErrorRow*> corrected, front;
+  std::vector<measure::CostAndError> points;
+  for (const ErrorRow& row : rows) {
+    if (!row.at("inside_front").get<bool>() || row.at("fidelity") == "original") continue;
+    corrected.push_back(&row);
+    points.push_back(pointOf(row, row));
+  }
+  const std::vector<bool> isOnFront = measure::paretoFront(points);
+  for (std::size_t i = 0; i < corrected.size(); ++i)
+    if (isOnFront[i]) front.push_back(corrected[i]);
+  std::ranges::sort(front, {}, [](const ErrorRow* row) { return number(*row, "ms"); });
+  return front;
+}
+
 std::vector<Sweep> sweepsOf(const std::vector<ErrorRow>& rows) {
   std::vector<Sweep> sweeps;
   for (std::size_t first = 0, last = 0; first < rows.size(); first = last) {

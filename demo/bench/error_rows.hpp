@@ -85,6 +85,9 @@ TechniqueModel modelOf(const SweepPoint& point, measure::LightKinds scene);
 /// Fills "inside_front": whether the row is on the front of its technique and model by `ms` and the l2 inside the model
 /// (true without a model). Then "pareto" by `ms` and `l2` among those, and "front": 1 for the fastest on it, 0 off it.
 void markFront(std::vector<ErrorRow>& rows);
+/// After markFront: the front by `ms` and `l2` among "inside_front" rows that are not as published, by time. A
+/// published row that beats them all does not empty it.
+std::vector<const ErrorRow*> correctedFront(const std::vector<ErrorRow>& rows);
 /// "More is better": for every series whose points are steps, its errors in order (inside the model where all points
 /// have the same, else of all light; null at the reference's noise), and the steps after which the error is larger by
 /// more than two standard errors, which the reference's noise gives.

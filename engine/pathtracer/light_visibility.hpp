@@ -19,7 +19,7 @@ class LightVisibility {
  public:
   static constexpr int kCells = 16;  ///< along the longest side of the box
   static constexpr int kKinds = 3;  ///< the sun, the environment, lamps
-  static constexpr int kPoints = 16384;  ///< on surfaces, by area; 8 rays each
+  static constexpr int kRays = 32768;  ///< in the box; 8 more to lights from what each meets
 
   /// `constants`: uniform block 0, with the scene's environment. Traces the rays.
   LightVisibility(gl::ProgramLibrary& programs, const Scene& scene, const PathScene& traced,
@@ -38,9 +38,5 @@ class LightVisibility {
   glm::ivec3 cells_;
   gl::BufferTexture counts_;
 };
-
-/// Points on the scene's triangles in equal shares of their area: the triangle, and bits of its two barycentrics.
-/// Empty without area.
-std::vector<glm::uvec4> pointsOnSurfaces(const Scene& scene, int count);
 
 }  // namespace lucerna

@@ -18,9 +18,11 @@ float reachingShare(uint cell, uint kind) {
 }
 #endif
 
-// What a light would bring if nothing blocked it; 0 behind the surface. side: cosine to the geometric normal.
+// What a light would bring if nothing blocked it; 0 behind the surface, and in its plane, where rounding would decide
+// whether there is a choice. side: cosine to the geometric normal.
 vec3 unblockedLight(Path path, Bsdf bsdf, LightSample light, float side) {
-  if (!(side * dot(light.direction, bsdf.normal) > 0.0)) return vec3(0.0);
+  const float kInPlane = 1e-6;
+  if (!(side * dot(light.direction, bsdf.normal) > 0.0) || abs(side) < kInPlane) return vec3(0.0);
 #if ROUGH_DIELECTRICS
   if (bsdf.kind != PATH_DIELECTRIC && side < 0.0) return vec3(0.0);
 #else
@@ -44,7 +46,7 @@ void addNextEvent(Path path, Surface surface, uint triangle, Bsdf bsdf, float io
   if (bulges) towards = bulging.normal;
 #endif
 #if LIGHT_VISIBILITY
-  uint cell = lightCellAt(surface.position);
+  uint cell = lightCellBefore(surface);
 #endif
 
   // One of the candidates.

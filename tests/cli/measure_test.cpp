@@ -151,7 +151,7 @@ TEST_F(Measure, BenchErrorReportsAndGoesOnWhereItWas) {
     from = choice.at("from_ms");
     EXPECT_NE(first.out.find(choice.at("first").get<std::string>() + " (error "), std::string::npos) << first.out;
     const auto isItsRow = [&](const nlohmann::json& row) {
-      return row.at("label") == choice.at("first") && row.at("pareto") && row.at("fidelity") != "original";
+      return row.at("label") == choice.at("first") && row.at("inside_front") && row.at("fidelity") != "original";
     };
     EXPECT_TRUE(std::ranges::any_of(report.at("rows"), isItsRow)) << choice;
   }

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include <bit>
+#include <algorithm>
 #include <cmath>
 
 namespace lucerna::test {
@@ -42,15 +42,15 @@ class LightChoice : public PathTest {
   }
 };
 
-// By where each point lies, in double: the sun reaches what no roof is above.
-TEST_F(LightChoice, SharesOfTheSunAreThoseOfTheSamplePoints) {
+// The sun reaches what no roof is above.
+TEST_F(LightChoice, SharesOfTheSunAreThoseOfWhatIsUnderTheSky) {
   const Scene scene = underRoof(1.0f, 1.0f);
   const PathTracer rendered = tracer(scene, lookingAt({0.0, 2.0, 0.0}, glm::dvec3(0.0)), 8, 1);
   ASSERT_TRUE(rendered.lightVisibility());
   const std::vector<glm::uvec2> counts = rendered.lightVisibility()->counts();
   const double cell = kSide / LightVisibility::kCells;
   const int across = LightVisibility::kCells, high = static_cast<int>(std::ceil(kRoof / cell));
-  std::size_t lit = 0, dark = 0, reached = 0, sampled = 0;
+  std::size_t lit = 0, dark = 0;
   for (int z = 0; z < across; ++z)
     for (int x = 0; x < across; ++x) {
       if (x == across / 2 - 1 || x == across / 2) continue;  // the roof's edge is above the line between them
@@ -61,29 +61,27 @@ TEST_F(LightChoice, SharesOfTheSunAreThoseOfTheSamplePoints) {
       (x < across / 2 ? dark : lit) += 1;
     }
   EXPECT_EQ(lit, dark);
-  for (std::size_t i = 0; i < counts.size(); i += LightVisibility::kKinds)
-    sampled += counts[i].x, reached += counts[i].y;
-  // The sun's share of the table times the rays of all points: of the floor one half, of the roof all.
-  EXPECT_NEAR(static_cast<double>(reached) / static_cast<double>(sampled), 2.0 / 3.0, 0.02);
 }
 
-TEST_F(LightChoice, PointsLieOnTrianglesByArea) {
-  const Scene scene = underRoof(1.0f, 1.0f);
-  const std::vector<glm::uvec4> points = pointsOnSurfaces(scene, 9700);  // 64 of floor, 32 of roof, 1 of the lamp
-  ASSERT_EQ(points.size(), 9700u);
-  std::array<int, 3> ofPlate{};
-  glm::dvec2 mean(0.0);
-  for (const glm::uvec4& point : points) {
-    ++ofPlate[point.x / 2];
-    const double u = std::bit_cast<float>(point.y), v = std::bit_cast<float>(point.z);
-    EXPECT_GE(std::min(u, v), 0.0);
-    EXPECT_LE(u + v, 1.0);
-    mean += glm::dvec2(u, v) / 9700.0;
+// Rays know surfaces, not the triangles that they are made of: floor and roof turned around give the same counts, but
+// for rays whose hits are rounded into another cell. The lamp keeps its triangles: points on it are drawn from them.
+TEST_F(LightChoice, SharesDoNotDependOnHowAMeshIsWritten) {
+  Scene scene = underRoof(1.0f, 1.0f);
+  const auto countsOf = [&] {
+    return tracer(scene, lookingAt({0.0, 2.0, 0.0}, glm::dvec3(0.0)), 8, 1).lightVisibility()->counts();
+  };
+  const std::vector<glm::uvec2> before = countsOf();
+  for (std::size_t i = 0; i < 12; i += 3) std::swap(scene.indices[i + 1], scene.indices[i + 2]);
+  std::reverse(scene.indices.begin(), scene.indices.begin() + 6);  // of the floor
+  const std::vector<glm::uvec2> after = countsOf();
+  ASSERT_EQ(after.size(), before.size());
+  std::uint64_t total = 0, changed = 0;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    total += before[i].x + before[i].y;
+    for (int k = 0; k < 2; ++k) changed += std::max(before[i][k], after[i][k]) - std::min(before[i][k], after[i][k]);
   }
-  EXPECT_EQ(ofPlate, (std::array<int, 3>{6400, 3200, 100}));
-  EXPECT_NEAR(mean.x, 1.0 / 3.0, 0.002);
-  EXPECT_NEAR(mean.y, 1.0 / 3.0, 0.002);
-  EXPECT_TRUE(pointsOnSurfaces(Scene{}, 10).empty());
+  EXPECT_GT(total, 50000u);
+  EXPECT_LE(changed, total / 500);
 }
 
 TEST_F(LightChoice, ASunThatARoofKeepsOutCostsLittle) {
