@@ -363,6 +363,78 @@ void addFarLamp(std::vector<StabilityCase>& cases) {
                    }});
 }
 
+/// The shadow of a box of 2 m on a plain of 5 km, of one material: what a picture shows large has a shadow, however
+/// wide the map's texels are.
+void addPlain(std::vector<StabilityCase>& cases) {
+  const auto plain = [] {
+    SceneParts parts("plain");
+    const int grey = parts.material(glm::vec3(0.5f));
+    parts.plate({0, 0, 0}, {0, 0, 5000}, {5000, 0, 0}, grey);
+    parts.box({-1, 0, -1}, {1, 2, 1}, grey);
+    parts.scene().cameras.push_back(limitsCamera({2, 12, 0}, {2, 0, 0}, 0.05));
+    return std::move(parts.scene());
+  };
+  for (const char* technique : {"direct", "irradiance-cache"})
+    for (const double away : {0.0, 100.0, 1e3, 2e4})
+      cases.push_back({technique, "box of 2 on a plain of 5,000: its shadow over the light beside",
+                       away > 0.0 ? fmt::format("lamp {:g} away", std::sqrt(2.0) * away) : "sun",
+                       [=](const StabilityContext& c) {
+                         Scene scene = plain();
+                         const auto intensity = glm::vec3(static_cast<float>(2.0 * away * away));
+                         if (away > 0.0) scene.points.push_back({{-away, away + 1.0, 0.0}, intensity});
+                         else scene.sun = DirectionalLight{glm::normalize(glm::dvec3(1, -1, 0)), glm::vec3(1.0f)};
+                         const double dark = limitsPicture(c, scene, technique, 1.0);
+                         scene.cameras = {limitsCamera({8, 12, 0}, {8, 0, 0}, 0.05)};
+                         return Measurement{1e-3, dark / limitsPicture(c, scene, technique, 1.0), 0.0, Rule::atMost};
+                       }});
+  cases.push_back({"direct", "box of 2 on a plain of 5,000: its shadow over the light beside", "spot",
+                   [=](const StabilityContext& c) {
+                     Scene scene = plain();
+                     SpotLight spot;
+                     spot.position = {-100, 101, 0};
+                     spot.direction = glm::normalize(glm::dvec3(1, -1, 0));
+                     spot.intensity = glm::vec3(2e4f);
+                     spot.innerAngle = 1.0;
+                     spot.outerAngle = 1.2;
+                     scene.spots = {spot};
+                     const double dark = limitsPicture(c, scene, "direct", 1.0);
+                     scene.cameras = {limitsCamera({8, 12, 0}, {8, 0, 0}, 0.05)};
+                     return Measurement{1e-3, dark / limitsPicture(c, scene, "direct", 1.0), 0.0, Rule::atMost};
+                   }});
+}
+
+/// Of a room like Cornell's, whose pixels look into the slit between its lamp and the ceiling: light in there is
+/// bright, and the records' cells are wider.
+void addSlit(std::vector<StabilityCase>& cases) {
+  cases.push_back({"irradiance-cache", "lamp a thousandth of a room below the ceiling: indirect, over paths", "48x48",
+                   [](const StabilityContext& c) {
+                     SceneParts parts("slit");
+                     const int white = parts.material(glm::vec3(0.725f));
+                     const double side = 0.55, middle = 0.5 * side, up = side - 5e-4;
+                     parts.plate({middle, 0, middle}, {0, 0, side}, {side, 0, 0}, white);
+                     parts.plate({middle, side, middle}, {side, 0, 0}, {0, 0, side}, white);
+                     parts.plate({middle, middle, side}, {0, side, 0}, {side, 0, 0}, white);
+                     parts.plate({0, middle, middle}, {0, side, 0}, {0, 0, side}, white);
+                     parts.plate({side, middle, middle}, {0, 0, side}, {0, side, 0}, white);
+                     parts.plate({0.278, up, 0.2795}, {0.13, 0, 0}, {0, 0, 0.105},
+                                 parts.material(glm::vec3(0.78f), glm::vec3(17.0f)));
+                     parts.scene().cameras.push_back(limitsCamera({0.278, 0.273, -0.8}, {0.278, 0.273, 0.0}, 0.68605));
+                     RenderSettings settings;
+                     settings.component = Component::indirect;
+                     settings.size = {48, 48};
+                     settings.pixelSamples = 16;
+                     settings.fullFloatTarget = true;
+                     const auto shown = [&](const char* technique) {
+                       settings.technique = technique;
+                       settings.of<PathSettings>().samples = 64;
+                       Renderer renderer(c.context, c.programs, parts.scene(), settings);
+                       renderer.renderToTheEnd(parts.scene().cameras.front());
+                       return meanOf(renderer.readRadiance()).x;
+                     };
+                     return Measurement{1.0, shown("irradiance-cache") / shown("path"), 0.08};
+                   }});
+}
+
 /// What stands beside the camera in a scene 13,000 km wide is within the near plane: drawn, or named by a warning.
 void addNearMesh(std::vector<StabilityCase>& cases) {
   cases.push_back(
@@ -507,6 +579,8 @@ void addLimitCases(std::vector<StabilityCase>& cases) {
   addReach(cases);
   addSmallLamps(cases);
   addFarLamp(cases);
+  addPlain(cases);
+  addSlit(cases);
   addNearMesh(cases);
   addSeenLamp(cases);
   addAsPublished(cases);

@@ -23,6 +23,7 @@
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfRgbaFile.h>
+#include <ImfRgbaYca.h>
 #include <ImfStandardAttributes.h>
 
 #include <algorithm>
@@ -444,18 +445,30 @@ void convertToRec709(Image& image, const Imf::Chromaticities& from, const fs::pa
                clipped);
 }
 
-/// Reads channels into the picture's window; what lies outside of it is cut off.
-void readExrChannels(Imf::InputFile& input, bool colour, const Imath::Box2i& window, Image& data) {
+/// Reads channels, one or three, into the picture's window; what lies outside of it is cut off.
+void readExrChannels(Imf::InputFile& input, std::span<const char* const> names, const Imath::Box2i& window,
+                     Image& data) {
   Imf::FrameBuffer frame;
-  const char* names[3] = {"R", "G", "B"};
-  for (std::size_t c = 0; c < (colour ? 3u : 1u); ++c)
-    frame.insert(colour ? names[c] : "Y",
-                 Imf::Slice::Make(Imf::FLOAT, &data.pixels[0][static_cast<int>(c)], window, kPixelStride,
-                                  kPixelStride * static_cast<std::size_t>(data.width)));
+  for (std::size_t c = 0; c < names.size(); ++c)
+    frame.insert(names[c], Imf::Slice::Make(Imf::FLOAT, &data.pixels[0][static_cast<int>(c)], window, kPixelStride,
+                                            kPixelStride * static_cast<std::size_t>(data.width)));
   input.setFrameBuffer(frame);
   input.readPixels(window.min.y, window.max.y);
-  if (!colour)
+  if (names.size() == 1)
     for (glm::vec3& p : data.pixels) p = glm::vec3(p.x);
+}
+
+/// Luminance and chroma of the same resolution: RY = (R - Y) / Y and BY = (B - Y) / Y, Y a weighted sum of R, G and B.
+void readExrFullChroma(Imf::InputFile& input, const Imath::Box2i& window, Image& data) {
+  static constexpr std::array<const char*, 3> kNames{"RY", "Y", "BY"};
+  readExrChannels(input, kNames, window, data);
+  Imf::Chromaticities primaries;
+  if (Imf::hasChromaticities(input.header())) primaries = Imf::chromaticities(input.header());
+  const Imath::V3f weights = Imf::RgbaYca::computeYw(primaries);
+  for (glm::vec3& p : data.pixels) {
+    const float y = p.y, r = (p.x + 1.0f) * y, b = (p.z + 1.0f) * y;
+    p = {r, (y - weights.x * r - weights.z * b) / weights.y, b};
+  }
 }
 
 /// Luminance, and chroma of half the resolution: OpenEXR's own reader interpolates and weighs it.
@@ -496,8 +509,12 @@ Image decodeExr(std::span<const std::uint8_t> bytes, const fs::path& file) {
   }
 
   Image data(dataSize.x, dataSize.y);
-  if (chroma) readExrChroma(stream, window, data);
-  else readExrChannels(input, colour, window, data);
+  static constexpr std::array<const char*, 3> kColours{"R", "G", "B"};
+  const bool halfChroma = chroma && channels.findChannel("RY")->xSampling == 2;
+  if (halfChroma) readExrChroma(stream, window, data);
+  else if (chroma) readExrFullChroma(input, window, data);
+  else if (colour) readExrChannels(input, kColours, window, data);
+  else readExrChannels(input, std::array{"Y"}, window, data);
   if ((colour || chroma) && Imf::hasChromaticities(input.header())) {
     const Imf::Chromaticities given = Imf::chromaticities(input.header()), usual;
     constexpr float kRounding = 1e-4f;

@@ -14,14 +14,17 @@ constexpr double kFilterTexels =
     4.0;  // border of two texels per side, so that the filter and the normal offset stay inside the map
 }
 
-int neededCascades(const Scene& scene, double texel) {
-  constexpr double kLeastTexels = 4.0;  // across a mesh
-  const bool isTooWide = std::ranges::any_of(scene.meshes, [&](const Mesh& mesh) {
-    const glm::dvec3 extent = mesh.bounds.extent();
+int neededCascades(const Scene& scene, std::span<const Bounds> parts, double texel) {
+  const auto isTooSmall = [&](const Bounds& box) {
+    const glm::dvec3 extent = box.extent();
     const double across = std::max({extent.x, extent.y, extent.z});
-    return mesh.indexCount > 0 && across > 0.0 && across < kLeastTexels * texel;
-  });
-  return isTooWide ? SUN_MAX_CASCADES : 1;
+    return across > 0.0 && across < kLeastTexelsAcross * texel;
+  };
+  const bool hasSmall =
+      std::ranges::any_of(parts, isTooSmall) || std::ranges::any_of(scene.meshes, [&](const Mesh& mesh) {
+        return mesh.indexCount > 0 && isTooSmall(mesh.bounds);
+      });
+  return hasSmall ? SUN_MAX_CASCADES : 1;
 }
 
 std::vector<double> splitDistances(double near, double far, int cascades, double lambda) {

@@ -14,6 +14,7 @@
 
 #include <glm/glm.hpp>
 
+#include <span>
 #include <vector>
 
 namespace lucerna {
@@ -21,13 +22,17 @@ namespace lucerna {
 struct SunCascadeSettings {
   static constexpr int kAuto = 0;
   int cascades = kAuto;  ///< 1: one map for the whole scene, no cascades at all; at most SUN_MAX_CASCADES, which is
-                         ///< also what kAuto means where one map's texels are too wide for the scene's smallest meshes
+                         ///< also what kAuto means where one map's texels are too wide for a mesh or a part in view
   double split = 0.9;  ///< lambda: 0 uniform, 1 logarithmic. Near planes lie at 1/2000 of the scene, so 0.5 would be
                        ///< nearly uniform
 };
 
-/// The number of cascades that kAuto stands for. texel: side of a texel of a map of the whole scene, scene units.
-int neededCascades(const Scene& scene, double texel);
+/// A part of a scene needs a map's texels to be this many times narrower than it, to have a shadow.
+constexpr double kLeastTexelsAcross = 4.0;
+
+/// The number of cascades that kAuto stands for. texel: side of a texel of a map of the whole scene, scene units;
+/// parts: those that a picture shows large (scene/parts.hpp).
+int neededCascades(const Scene& scene, std::span<const Bounds> parts, double texel);
 
 /// The split distances along the view axis, cascades + 1 of them, from near to far exactly. 0 < near < far.
 std::vector<double> splitDistances(double near, double far, int cascades, double lambda);

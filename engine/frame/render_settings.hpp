@@ -45,6 +45,7 @@ struct RenderSettings {
   Component component = Component::all;
   glm::ivec2 size{1280, 720};
   int pixelSamples = 1;  ///< frames of one view that are added up, each for another point of every pixel
+  int multisamples = 1;  ///< points of a pixel at which a frame tells surfaces apart; each is shaded once
   PixelFilter filter = PixelFilter::box;  ///< places them
   bool reprojection = true;  ///< while the view moves, frames before it smooth edges too
   bool reuse = true;  ///< stages with unchanged inputs are not run again; the same picture, bit by bit

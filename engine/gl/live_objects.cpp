@@ -33,6 +33,7 @@ std::size_t countLiveObjects() {
   return countOf(named(glGenBuffers), released(glDeleteBuffers), glIsBuffer) +
          countOf(named(glGenTextures), released(glDeleteTextures), glIsTexture) +
          countOf(named(glGenFramebuffers), released(glDeleteFramebuffers), glIsFramebuffer) +
+         countOf(named(glGenRenderbuffers), released(glDeleteRenderbuffers), glIsRenderbuffer) +
          countOf(named(glGenVertexArrays), released(glDeleteVertexArrays), glIsVertexArray) +
          countOf(named(glGenSamplers), released(glDeleteSamplers), glIsSampler) +
          countOf(named(glGenQueries), released(glDeleteQueries), glIsQuery) +

@@ -83,6 +83,7 @@ namespace detail {
 void deleteBuffer(GLuint id) { glDeleteBuffers(1, &id); }
 void deleteTexture(GLuint id) { glDeleteTextures(1, &id); }
 void deleteFramebuffer(GLuint id) { glDeleteFramebuffers(1, &id); }
+void deleteRenderbuffer(GLuint id) { glDeleteRenderbuffers(1, &id); }
 void deleteVertexArray(GLuint id) { glDeleteVertexArrays(1, &id); }
 void deleteSampler(GLuint id) { glDeleteSamplers(1, &id); }
 }  // namespace detail
@@ -365,12 +366,16 @@ void clearToZero(std::span<const Texture* const> textures, bool haveClearTexture
 
 // ---------------------------------------------------------------------------------------------------- Framebuffer
 
-Framebuffer::Framebuffer(const std::string& name, std::span<const Texture* const> colors, const Texture* depth) {
+Framebuffer::Framebuffer(const std::string& name) {
   GLuint id = 0;
   glGenFramebuffers(1, &id);
   handle_ = decltype(handle_)(id);
   glBindFramebuffer(GL_FRAMEBUFFER, id);
   label(GL_FRAMEBUFFER, id, name);
+}
+
+Framebuffer::Framebuffer(const std::string& name, std::span<const Texture* const> colors, const Texture* depth)
+    : Framebuffer(name) {
   std::vector<GLenum> buffers;
   for (const Texture* color : colors) {
     const auto attachment = static_cast<GLenum>(GL_COLOR_ATTACHMENT0 + buffers.size());
@@ -388,10 +393,62 @@ Framebuffer::Framebuffer(const std::string& name, std::span<const Texture* const
   } else {
     glDrawBuffers(static_cast<GLsizei>(buffers.size()), buffers.data());
   }
+  requireComplete(name);
+}
+
+void Framebuffer::requireComplete(const std::string& name) const {
   const GLenum status = glCheckFramebufferStatus(GL_FRAMEBUFFER);
   throwIfError(name);
   if (status != GL_FRAMEBUFFER_COMPLETE)
     throwMissingCapability("framebuffer {}: this driver cannot draw into it (status {:#x})", name, status);
+}
+
+// ---------------------------------------------------------------------------------------------------- Multisampled
+
+namespace {
+
+/// The driver's number of samples of a format that is nearest to those asked for, and not below.
+int samplesOf(const std::string& name, Format format, int samples) {
+  std::array<GLint, 16> offered{};  // in descending order
+  glGetInternalformativ(GL_RENDERBUFFER, raw(format), GL_SAMPLES, static_cast<GLsizei>(offered.size()), offered.data());
+  int nearest = 0;
+  for (const GLint n : offered)
+    if (n >= samples) nearest = n;
+  if (nearest == 0)
+    throwMissingCapability("{}: {} samples per pixel needed, this driver has {} at most", name, samples, offered[0]);
+  return nearest;
+}
+
+}  // namespace
+
+MultisampledTarget::MultisampledTarget(const std::string& name, Format color, Format depth, glm::ivec2 size,
+                                       int samples)
+    : target_(name), samples_(std::max(samplesOf(name, color, samples), samplesOf(name, depth, samples))) {
+  const auto attach = [&](GLenum attachment, Format format) {
+    GLuint id = 0;
+    glGenRenderbuffers(1, &id);
+    glBindRenderbuffer(GL_RENDERBUFFER, id);
+    label(GL_RENDERBUFFER, id, name);
+    glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples_, raw(format), size.x, size.y);
+    glFramebufferRenderbuffer(GL_FRAMEBUFFER, attachment, GL_RENDERBUFFER, id);
+    bytes_ += static_cast<std::size_t>(samples_) * static_cast<std::size_t>(size.x * size.y) * bytesPerTexel(format);
+    return id;
+  };
+  color_ = decltype(color_)(attach(GL_COLOR_ATTACHMENT0, color));
+  depth_ = decltype(depth_)(attach(GL_DEPTH_ATTACHMENT, depth));
+  glDrawBuffer(GL_COLOR_ATTACHMENT0);
+  target_.size_ = size;
+  target_.requireComplete(name);
+}
+
+void MultisampledTarget::resolveTo(const Framebuffer& picture) const {
+  const glm::ivec2 size = target_.size();
+  CHECK(picture.size() == size, "{}x{} resolved to {}x{}", size.x, size.y, picture.size().x, picture.size().y);
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, target_.id());
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, picture.id());
+  glDisable(GL_SCISSOR_TEST);
+  glBlitFramebuffer(0, 0, size.x, size.y, 0, 0, size.x, size.y, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 
 // ---------------------------------------------------------------------------------------------------- VertexArray

@@ -23,6 +23,7 @@ namespace detail {
 void deleteBuffer(GLuint id);
 void deleteTexture(GLuint id);
 void deleteFramebuffer(GLuint id);
+void deleteRenderbuffer(GLuint id);
 void deleteVertexArray(GLuint id);
 void deleteSampler(GLuint id);
 }  // namespace detail
@@ -211,8 +212,32 @@ class Framebuffer {
   glm::ivec2 size() const { return size_; }
 
  private:
+  friend class MultisampledTarget;
+  explicit Framebuffer(const std::string& name);
+  void requireComplete(const std::string& name) const;
+
   Handle<detail::deleteFramebuffer> handle_;
   glm::ivec2 size_{0};
+};
+
+/// Colour and depth at several points of each pixel. A fragment is shaded once for all points of a pixel that its
+/// triangle covers.
+class MultisampledTarget {
+ public:
+  /// `samples`: at least so many. Throws Error(missingCapability) if the driver has fewer for one of the formats.
+  MultisampledTarget(const std::string& name, Format color, Format depth, glm::ivec2 size, int samples);
+
+  const Framebuffer& target() const { return target_; }
+  int samples() const { return samples_; }
+  /// The mean of each pixel's samples into the first colour of a framebuffer of the same size.
+  void resolveTo(const Framebuffer& picture) const;
+  std::size_t bytes() const { return bytes_; }
+
+ private:
+  Handle<detail::deleteRenderbuffer> color_, depth_;
+  Framebuffer target_;
+  int samples_ = 0;
+  std::size_t bytes_ = 0;
 };
 
 class VertexArray {

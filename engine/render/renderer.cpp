@@ -3,9 +3,11 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "gl/read_pictures.hpp"
+#include "render/near_plane.hpp"
 #include "render/techniques.hpp"
 #include "rsm/lamp_choice.hpp"
 #include "scene/coat.hpp"
+#include "scene/parts.hpp"
 #include "scene/place.hpp"
 #include "scene/studio.hpp"
 #include "shared/bindings.h"
@@ -36,16 +38,12 @@ double farPlane(const Camera& camera, const Bounds& bounds) {
   return 1.01 * farthest;
 }
 
-double nearPlane(const Bounds& bounds) { return 5e-4 * std::max(glm::length(bounds.extent()), 1e-6); }
-
-// Near and far planes follow the scene: far just behind its farthest corner, near at 1/2000 of its diagonal. An
-// orthographic view begins at its camera.
-glm::dmat4 clipFromWorld(const Camera& camera, const Bounds& bounds, glm::ivec2 size) {
+// The far plane is just behind the scene's farthest corner. An orthographic view begins at its camera.
+glm::dmat4 clipFromWorld(const Camera& camera, const Bounds& bounds, double near, glm::ivec2 size) {
   const double aspect = static_cast<double>(size.x) / size.y, half = camera.halfHeight();
   const glm::dmat4 clipFromView =
-      camera.isOrthographic()
-          ? glm::ortho(-half * aspect, half * aspect, -half, half, 0.0, farPlane(camera, bounds))
-          : glm::perspective(camera.verticalFov, aspect, nearPlane(bounds), farPlane(camera, bounds));
+      camera.isOrthographic() ? glm::ortho(-half * aspect, half * aspect, -half, half, 0.0, farPlane(camera, bounds))
+                              : glm::perspective(camera.verticalFov, aspect, near, farPlane(camera, bounds));
   return clipFromView * glm::lookAt(camera.position, camera.position + camera.direction, camera.up);
 }
 
@@ -111,6 +109,7 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
 void Renderer::makeLights(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene) {
   const TechniqueEntry& technique = techniqueNamed(settings_.technique);
   const Scene& drawn = gpuScene_->scene();
+  near_ = nearPlane(drawn, aspect());
   if (scene.sun) sunFrustum_ = fitSunFrustum(drawn, scene.sun->direction);
   if (!localLights_) chooseLamps(programs);
   if (showsDirect()) makeShadowMaps(programs);
@@ -142,6 +141,7 @@ void Renderer::chooseLamps(gl::ProgramLibrary& programs) {
     const std::size_t most =
         hasMaps || reflectsLamps ? static_cast<std::size_t>(settings_.lights.shadows) : mostByRays / 2;
     const std::string_view lack = reflectsLamps ? "are in no map of light" : "";
+    if (hasMaps && !reflectsLamps) leaveCoarseMapsToRays();
     for (std::vector<LightViews>* lamps : {&spots_, &points_})
       std::ranges::move(keepMostImportant(programs, *gpuScene_, *lamps, most, lack), std::back_inserter(plainLamps_));
   }
@@ -149,6 +149,24 @@ void Renderer::chooseLamps(gl::ProgramLibrary& programs) {
   if (showsDirect() && plainLamps_.size() + byRaysToo > mostByRays)
     logWarning("{} lamps: {} of them have shadows by rays, the others shine through what is before them",
                spots_.size() + points_.size() + plainLamps_.size(), mostByRays);
+}
+
+// Lamps in whose maps a part that is large in the picture would have few texels, or none.
+void Renderer::leaveCoarseMapsToRays() {
+  const std::vector<Bounds> parts = partsLargeInView(gpuScene_->scene());
+  const auto isCoarse = [&](const LightViews& lamp) {
+    const int size = lamp.omnidirectional() ? settings_.lights.pointSize : settings_.lights.spotSize;
+    return std::ranges::any_of(parts, [&](const Bounds& part) {
+      const glm::dvec3 extent = part.extent();
+      const double across = std::max({extent.x, extent.y, extent.z});
+      const double texel = lamp.texelWidth(size) * glm::distance(part.centre(), lamp.position);
+      return across > 0.0 && across < kLeastTexelsAcross * texel;
+    });
+  };
+  for (std::vector<LightViews>* lamps : {&spots_, &points_}) {
+    std::ranges::copy_if(*lamps, std::back_inserter(plainLamps_), isCoarse);
+    std::erase_if(*lamps, isCoarse);
+  }
 }
 
 bool Renderer::follow(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
@@ -185,32 +203,19 @@ bool Renderer::follow(const gl::Context& context, gl::ProgramLibrary& programs, 
 // The near plane follows the scene's size, so a part of a scene that is 2000 times as wide would be cut away.
 void Renderer::warnOfWhatIsCut() {
   const Scene& scene = gpuScene_->scene();
-  if (scene.cameras.empty() || scene.cameras.front().isOrthographic()) return;
-  const glm::dmat4 clip = clipFromWorld(scene.cameras.front(), scene.bounds, settings_.size);
-  const double near = nearPlane(scene.bounds), high = scene.cameras.front().halfHeight(),
-               wide = high * settings_.size.x / settings_.size.y,
-               reach = near * glm::length(glm::dvec3(wide, high, 1.0));
-  const glm::dvec3& eye = scene.cameras.front().position;
-  const auto isNear = [&](const Bounds& box) {
-    return glm::distance(glm::clamp(eye, box.min, box.max), eye) <= 1.01 * reach;
-  };
-  const auto isCut = [&](std::uint32_t index) {
-    const glm::dvec4 p = clip * glm::dvec4(scene.vertices[index].position, 1.0);
-    return p.w > 0.0 && p.w < near && std::max(std::abs(p.x), std::abs(p.y)) < p.w;
-  };
+  if (scene.cameras.empty()) return;
+  const std::vector<double> nearest = nearestInView(scene, scene.cameras.front(), aspect(), near_);
   std::vector<std::string> names;
-  for (const Mesh& mesh : scene.meshes)
-    if (!mesh.bounds.empty() && isNear(mesh.bounds) &&
-        std::any_of(scene.indices.begin() + mesh.firstIndex, scene.indices.begin() + mesh.firstIndex + mesh.indexCount,
-                    isCut))
-      names.push_back("'" + scene.materials[static_cast<std::size_t>(mesh.material)].name + "'");
+  for (std::size_t m = 0; m < nearest.size(); ++m)
+    if (nearest[m] < near_)
+      names.push_back("'" + scene.materials[static_cast<std::size_t>(scene.meshes[m].material)].name + "'");
   std::ranges::sort(names);
   names.erase(std::unique(names.begin(), names.end()), names.end());
   if (names.empty()) return;
   warnings_.push_back(
       fmt::format("{} within {:.3g} of the camera: not drawn, as the scene is {:.3g} wide (technique "
                   "path draws all)",
-                  fmt::join(names, ", "), near, glm::length(scene.bounds.extent())));
+                  fmt::join(names, ", "), near_, glm::length(scene.bounds.extent())));
   logWarning("{}", warnings_.back());
 }
 
@@ -298,8 +303,8 @@ void Renderer::makeShadowMaps(gl::ProgramLibrary& programs) {
   if (SunShadow::isNeeded(features_) && !sunShadow_) {
     SunShadow::Settings shadow = settings_.shadow;
     if (shadow.cascades.cascades == SunCascadeSettings::kAuto)
-      shadow.cascades.cascades =
-          neededCascades(gpuScene_->scene(), std::max(sunFrustum_.width, sunFrustum_.height) / shadow.size);
+      shadow.cascades.cascades = neededCascades(gpuScene_->scene(), partsLargeInView(gpuScene_->scene()),
+                                                std::max(sunFrustum_.width, sunFrustum_.height) / shadow.size);
     sunShadow_.emplace(programs, *gpuScene_, shadow);
     sunShadowMade_ = false;
   }
@@ -381,6 +386,7 @@ void Renderer::allocateTargets() {
   radianceTarget_ = gl::Framebuffer("radiance", radiance, &depth_);
   depthTarget_ = gl::Framebuffer("depth", {}, &depth_);
   displayTarget_ = gl::Framebuffer("display", display);
+  multisampled_.reset();
   antialiasing_.resize(settings_.size);
   view_.reset();
   shown_ = &radiance_;
@@ -417,8 +423,7 @@ void Renderer::recordShadows(const Camera& camera, bool viewIsNew) {
   const bool sunIsMade = settings_.reuse && sunShadowMade_, lampsAreMade = settings_.reuse && lampShadowsMade_;
   if (sunShadow_ && ((viewIsNew && sunShadow_->followsCamera()) || !sunIsMade)) {
     const gl::TimeQuery::Scope stage(timer_, "shadow");
-    const double aspect = static_cast<double>(settings_.size.x) / settings_.size.y;
-    sunShadow_->record(*gpuScene_, sunFrustum_, camera, aspect, nearPlane(gpuScene_->scene().bounds));
+    sunShadow_->record(*gpuScene_, sunFrustum_, camera, aspect(), near_);
   }
   if (localLights_ && localLights_->hasSpots() && !lampsAreMade) {
     const gl::TimeQuery::Scope stage(timer_, "spot shadows");
@@ -437,7 +442,7 @@ FrameView Renderer::viewOf(const Camera& cameraInScene, const Camera& volumeCame
   view.offset = offset;
   view.camera.position -= origin_;
   view.volumeCamera.position -= origin_;
-  view.clip = clipFromWorld(view.camera, gpuScene_->scene().bounds, settings_.size);
+  view.clip = clipFromWorld(view.camera, gpuScene_->scene().bounds, near_, settings_.size);
   if (offset != glm::dvec2(0.0)) {
     const glm::dvec2 moved = -2.0 * offset / glm::dvec2(settings_.size);
     view.clip = glm::translate(glm::dmat4(1.0), glm::dvec3(moved, 0.0)) * view.clip;
@@ -453,9 +458,9 @@ gl::Lines::View Renderer::linesView(const Camera& cameraInScene, const Bounds& b
   Bounds bounds = boundsInScene;
   bounds.min -= origin_;
   bounds.max -= origin_;
-  const glm::mat4 clip(clipFromWorld(camera, bounds, settings_.size));
+  const glm::mat4 clip(clipFromWorld(camera, bounds, near_, settings_.size));
   if (camera.isOrthographic()) return {clip};  // its clip w, 1, is no distance to compare with the depth's
-  return {clip, static_cast<float>(nearPlane(bounds)), static_cast<float>(farPlane(camera, bounds)), depth()};
+  return {clip, static_cast<float>(near_), static_cast<float>(farPlane(camera, bounds)), depth()};
 }
 
 void Renderer::bindFrameConstants(const FrameView& view) {
@@ -497,26 +502,39 @@ std::span<const GeometryTechnique::Sides> Renderer::sides() const {
   return geometry_ ? geometry_->sides() : std::span(&kBoth, 1);
 }
 
+void Renderer::drawDepth(const gl::Framebuffer& target, const FrameView& view) {
+  const auto all = sides();
+  for (const GeometryTechnique::Sides& sides : all) {
+    gl::RasterState state;
+    state.depth = gl::Depth::lessWrite;
+    state.cull = sides.cull;
+    state.polygonOffset = sides.polygonOffset;
+    const gl::RasterPass pass("depth", target, state);
+    if (&sides == &all.front()) pass.clearDepth();
+    gpuScene_->draw(depthPrograms_, view.drawn());
+  }
+}
+
+const gl::Framebuffer& Renderer::surfaceTarget() {
+  if (settings_.multisamples <= 1) return radianceTarget_;
+  if (!multisampled_)
+    multisampled_.emplace("multisampled", radiance_.format(), depth_.format(), settings_.size, settings_.multisamples);
+  return multisampled_->target();
+}
+
 void Renderer::shade(const FrameView& view, bool depthIsDrawn) {
   const gl::TimeQuery::Scope stage(timer_, "shading");
   const auto all = sides();
-  if (!depthIsDrawn)
-    for (const GeometryTechnique::Sides& sides : all) {
-      gl::RasterState state;
-      state.depth = gl::Depth::lessWrite;
-      state.cull = sides.cull;
-      state.polygonOffset = sides.polygonOffset;
-      const gl::RasterPass pass("depth", depthTarget_, state);
-      if (&sides == &all.front()) pass.clearDepth();
-      gpuScene_->draw(depthPrograms_, view.drawn());
-    }
+  const gl::Framebuffer& target = surfaceTarget();
+  if (!depthIsDrawn) drawDepth(depthTarget_, view);
+  if (multisampled_) drawDepth(target, view);
   bindForShading();
   for (const GeometryTechnique::Sides& sides : all) {
     gl::RasterState state;
     state.depth = gl::Depth::equalReadOnly;
     state.cull = sides.cull;
     state.polygonOffset = sides.polygonOffset;
-    const gl::RasterPass pass("surfaces", radianceTarget_, state);
+    const gl::RasterPass pass("surfaces", target, state);
     const bool showsBackground = settings_.component != Component::indirect;
     if (&sides == &all.front())
       pass.clearColor(0, glm::vec4(showsBackground ? gpuScene_->scene().background : glm::vec3(0.0f), 1.0f));
@@ -654,8 +672,9 @@ void Renderer::drawFrame(const FrameView& view, FrameEffort effort, bool viewIsN
   shade(view, depthIsDrawn);
   if (environmentView_) {
     const gl::TimeQuery::Scope stage(timer_, "environment");
-    environmentView_->record(radianceTarget_, noAttributes_, view.camera, settings_.size, view.offset);
+    environmentView_->record(surfaceTarget(), noAttributes_, view.camera, settings_.size, view.offset);
   }
+  if (multisampled_) multisampled_->resolveTo(radianceTarget_);
   if (technique_) technique_->addToPicture(timer_, view);
 }
 
@@ -686,8 +705,8 @@ Image Renderer::readRadiance() const { return gl::readImage(*shown_); }
 Bitmap Renderer::readDisplay() const { return gl::readBitmap(display_, settings_.size); }
 
 std::size_t Renderer::gpuBytes() const {
-  std::size_t bytes =
-      frameConstants_.bytes() + radiance_.bytes() + depth_.bytes() + display_.bytes() + antialiasing_.gpuBytes();
+  std::size_t bytes = frameConstants_.bytes() + radiance_.bytes() + depth_.bytes() + display_.bytes() +
+                      antialiasing_.gpuBytes() + (multisampled_ ? multisampled_->bytes() : 0);
   if (gpuScene_) bytes += gpuScene_->gpuBytes();
   if (sunShadow_) bytes += sunShadow_->gpuBytes();
   if (localLights_) bytes += localLights_->gpuBytes();

@@ -108,9 +108,11 @@ class Renderer {
   void makeLights(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene);
   glm::vec3 shownSky(const Scene& scene) const;
   void chooseLamps(gl::ProgramLibrary& programs);
+  void leaveCoarseMapsToRays();
   void makeShadowMaps(gl::ProgramLibrary& programs);
   void loadPrograms(gl::ProgramLibrary& programs);
   void allocateTargets();
+  double aspect() const { return static_cast<double>(settings_.size.x) / settings_.size.y; }
   bool accumulates() const { return !picture_ && settings_.pixelSamples > 1; }
   bool beginView(const Camera& camera, const Camera& volumeCamera);
   void drawSample(int sample, FrameEffort effort);
@@ -123,6 +125,9 @@ class Renderer {
   void bindFrameConstants(const FrameView& view);
   void bindFrameConstants(const shared::FrameConstants& constants);
   void recordShadows(const Camera& camera, bool viewIsNew);
+  void drawDepth(const gl::Framebuffer& target, const FrameView& view);
+  /// The multisampled target, or the picture itself.
+  const gl::Framebuffer& surfaceTarget();
   void shade(const FrameView& view, bool depthIsDrawn);
   double iterationsOfSurface() const;  ///< of a pixel of a raster technique
   void bindForShading() const;
@@ -151,6 +156,7 @@ class Renderer {
   GeometryTechnique* geometry_ = nullptr;  ///< the technique, if it is one of these
   PictureTechnique* picture_ = nullptr;
   std::optional<GpuScene> gpuScene_;  ///< not with a PictureTechnique
+  double near_ = 1.0;  ///< distance of the near plane
   SunFrustum sunFrustum_;
   std::vector<LightViews> spots_, points_;  ///< with shadow maps
   std::vector<LightViews> plainLamps_;  ///< without
@@ -158,6 +164,7 @@ class Renderer {
   gl::VertexArray noAttributes_;
   gl::Texture radiance_, depth_, display_;
   gl::Framebuffer depthTarget_, radianceTarget_, displayTarget_;
+  std::optional<gl::MultisampledTarget> multisampled_;  ///< surfaces are drawn there first; made by the first frame
   SurfacePrograms depthPrograms_, surfacePrograms_;
   const gl::Program* toneMap_ = nullptr;
   const gl::Texture* shown_ = &radiance_;

@@ -26,8 +26,8 @@ std::span<const Setting> sharedSettings() {
        "side of the sun's shadow map, of each cascade", "", rebuild, "shadow.transport=map", "", "shadows"},
       {"shadow.cascades",
        number(FRAME_FIELD(shadow.cascades.cascades), 1, SUN_MAX_CASCADES, "auto", SunCascadeSettings::kAuto), "",
-       "shadow maps of the sun along the view; 1: one for the whole scene; auto: one, unless a mesh has fewer than "
-       "4 of its texels",
+       "shadow maps of the sun along the view; 1: one for the whole scene; auto: one, unless a mesh, or a "
+       "part that is large in view, has fewer than 4 of its texels",
        "[Zhang2006]", rebuild, "shadow.transport=map", "", "shadows"},
       {"shadow.split", number(FRAME_FIELD(shadow.cascades.split), 0.0, 1.0), "",
        "how cascades divide the view's depth: 0 uniformly, 1 logarithmically", "[Zhang2006, section 3.2]", rebuild,
@@ -55,6 +55,9 @@ std::span<const Setting> sharedSettings() {
       {"picture.samples", number(FRAME_FIELD(pixelSamples), 1, 1024), "per pixel",
        "frames of one view that are averaged, each for another point of every pixel", "", rebuild, "",
        "16; where frames are timed 1", "textures"},
+      {"picture.multisamples", number(FRAME_FIELD(multisamples), 1, 64), "per pixel",
+       "points of each frame at which surfaces are told apart, at least; each surface of a pixel is shaded once", "",
+       rebuild, "", "", "textures"},
       {"picture.filter", choice(FRAME_FIELD(filter)), "",
        "weight of light around a pixel's centre: box: the pixel's area; gaussian: standard deviation 1/2, "
        "to "

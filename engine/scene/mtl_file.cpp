@@ -17,12 +17,6 @@ namespace {
 /// Keys without an effect here, or in any physically based renderer: ambient light, its pictures; hints for filters.
 constexpr std::string_view kSilent[] = {"ka", "map_ka", "sharpness", "map_aat"};
 
-std::string lowerCase(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return lower;
-}
-
 std::string_view withoutQuotes(std::string_view name) {
   const bool quoted = name.size() >= 2 && name.front() == name.back() && (name.front() == '"' || name.front() == '\'');
   return quoted ? name.substr(1, name.size() - 2) : name;
@@ -30,7 +24,7 @@ std::string_view withoutQuotes(std::string_view name) {
 
 class MtlReader {
  public:
-  MtlReader(std::string_view text, std::set<std::string>& ignored) : lines_(text), ignored_(ignored) {}
+  MtlReader(std::string_view text, std::set<std::string>& ignored) : lines_(text, true), ignored_(ignored) {}
 
   std::vector<MtlMaterial> run() {
     while (lines_.next()) {
@@ -92,6 +86,7 @@ class MtlReader {
       read[count++] = static_cast<float>(*channel);
     }
     if (count == 0) return ignore(word);
+    if (count == 2) ignore(fmt::format("{} {} {} (of two numbers)", word, read[0], read[1]));
     for (; count < 3; ++count) read[count] = read[0];
     to = read;
   }
@@ -178,19 +173,25 @@ class MtlReader {
 };
 
 /// Kd, Ks, Ns, Pm, Pr, Ni, illum and d.
-Material factorsOf(const MtlMaterial& mtl, TextureLoader& textures) {
-  const auto clamped = [](const std::optional<glm::vec3>& given, float highest, const glm::vec3& fallback) {
+Material factorsOf(const MtlMaterial& mtl, TextureLoader& textures, std::set<std::string>& ignored) {
+  const auto clamped = [&](const char* key, const std::optional<glm::vec3>& given, float highest,
+                           const glm::vec3& fallback) {
     if (!given) return fallback;
     glm::vec3 value;
     for (int c = 0; c < 3; ++c) value[c] = clampedNumber((*given)[c], 0.0f, highest, 0.0f);
+    constexpr float kRounding = 1e-3f;
+    const glm::vec3 changed = glm::abs(value - *given);
+    if (!(std::max({changed.x, changed.y, changed.z}) <= kRounding) || changed != changed)
+      ignored.insert(fmt::format("material '{}': {} {} {} {}, which counts as {} {} {}", mtl.name, key, given->x,
+                                 given->y, given->z, value.x, value.y, value.z));
     return value;
   };
   Material m;
   m.name = mtl.name;
-  m.diffuse = clamped(mtl.diffuse, 1.0f, glm::vec3(mtl.diffuseMap.file.empty() ? kDefaultAlbedo : 1.0f));
-  m.specular = clamped(mtl.specular, 1.0f, glm::vec3(0.0f));
-  m.emission =
-      clamped(mtl.emission, std::numeric_limits<float>::max(), glm::vec3(mtl.emissionMap.file.empty() ? 0.0f : 1.0f));
+  m.diffuse = clamped("Kd", mtl.diffuse, 1.0f, glm::vec3(mtl.diffuseMap.file.empty() ? kDefaultAlbedo : 1.0f));
+  m.specular = clamped("Ks", mtl.specular, 1.0f, glm::vec3(0.0f));
+  m.emission = clamped("Ke", mtl.emission, std::numeric_limits<float>::max(),
+                       glm::vec3(mtl.emissionMap.file.empty() ? 0.0f : 1.0f));
   const bool metalMap = !mtl.metallicMap.file.empty(), roughMap = !mtl.roughnessMap.file.empty();
   if (mtl.metallic || mtl.roughness || metalMap || roughMap) {  // pictures count by their mean
     const float metallic = clampedNumber(mtl.metallic.value_or(metalMap ? 1.0f : 0.0f), 0.0f, 1.0f, 0.0f) *
@@ -253,7 +254,7 @@ bool cutsOut(const Bitmap& bitmap) {
 }
 
 Material materialOf(const MtlMaterial& mtl, TextureLoader& textures, std::set<std::string>& ignored) {
-  Material m = factorsOf(mtl, textures);
+  Material m = factorsOf(mtl, textures, ignored);
   const std::string where = fmt::format("material '{}'", m.name);
 
   // Colour, opacity.

@@ -77,7 +77,8 @@ PolygonMesh readText(const std::filesystem::path& file, std::span<const std::uin
   };
   std::size_t first = 0;
   while (lines.next()) {
-    for (std::string_view word = lines.word(); !word.empty(); word = lines.word()) {
+    for (std::string_view read = lines.word(); !read.empty(); read = lines.word()) {
+      const std::string word = lowerCase(read);
       if (word == "solid" || word == "endsolid") {
         if (mesh.name.empty()) mesh.name = lines.rest();
         else static_cast<void>(lines.rest());
@@ -95,7 +96,7 @@ PolygonMesh readText(const std::filesystem::path& file, std::span<const std::uin
         inFacet = false;
         normal = glm::vec3(0.0f);
       } else if (word != "outer" && word != "loop" && word != "endloop") {
-        fail(fmt::format("'{}', expected a facet", word.substr(0, 40)));
+        fail(fmt::format("'{}', expected a facet", read.substr(0, 40)));
       }
     }
   }
@@ -109,8 +110,9 @@ void readStl(Scene& scene, std::span<const std::uint8_t> content) {
   const std::size_t count = content.size() >= kFacets ? wordAt(content, kHeader) : 0,
                     held = content.size() >= kFacets ? (content.size() - kFacets) / kFacet : 0;
   const std::string_view text(reinterpret_cast<const char*>(content.data()), content.size());
-  const bool isText = text.starts_with("solid") || text.starts_with("\xef\xbb\xbf") || text.starts_with("\xff\xfe") ||
-                      text.starts_with("\xfe\xff") || text.find_first_not_of(" \t\r\n") == text.find("solid");
+  const std::size_t begin = std::min(text.find_first_not_of(" \t\r\n"), text.size());
+  const bool isText = lowerCase(text.substr(begin, 5)) == "solid" || text.starts_with("\xef\xbb\xbf") ||
+                      text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff");
   const bool isBinary = count == held && kFacets + kFacet * held == content.size();
   if (!isText && !isBinary && (content.size() < kFacets || count > held))
     throwBadInput("{}: {} facets, its bytes hold {}: it is cut off, or no STL", scene.file.string(), count, held);

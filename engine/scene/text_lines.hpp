@@ -1,4 +1,4 @@
-// Lines and words of the text formats OBJ, MTL and PLY (no GL, pure).
+// Lines and words of the text formats OBJ, MTL, PLY and STL (no GL, pure).
 #pragma once
 
 #include <charconv>
@@ -9,6 +9,12 @@
 #include <string_view>
 
 namespace lucerna {
+
+inline std::string lowerCase(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return lower;
+}
 
 /// A decimal number as programs print them, also NaN and infinity in Microsoft's spelling; empty: it is none.
 inline std::optional<double> numberIn(std::string_view text) {

@@ -1,7 +1,7 @@
 // Cut-out meshes cast the shadow of their mask; opaque ones need no fragment work.
 #include "shared/bindings.h"
 #if ALPHA_MASK
-in vec2 vTexCoord;
+centroid in vec2 vTexCoord;
 layout(binding = UNIT_MASK) uniform sampler2D maskTexture;
 #endif
 

@@ -5,7 +5,7 @@ invariant gl_Position;  // the shading pass must compute exactly this depth
 layout(location = 0) in vec3 position;
 #if ALPHA_MASK
 layout(location = 1) in vec2 texCoord;
-out vec2 vTexCoord;
+centroid out vec2 vTexCoord;
 #endif
 
 void main() {

@@ -5,7 +5,7 @@ layout(triangle_strip, max_vertices = 3) out;
 uniform int firstLayer;
 #if ALPHA_MASK
 in vec2 gTexCoord[];
-out vec2 vTexCoord;
+centroid out vec2 vTexCoord;
 #endif
 
 void main() {

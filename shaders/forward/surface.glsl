@@ -19,10 +19,10 @@
 #include "forward/inspected.glsl"
 #endif
 
-in vec3 vPosition;
-in vec3 vNormal;
-in vec2 vTexCoord;
-in float vTangentPlane;
+centroid in vec3 vPosition;
+centroid in vec3 vNormal;
+centroid in vec2 vTexCoord;
+centroid in float vTangentPlane;
 layout(location = 0) out vec4 radiance;
 
 #if RAY_LAMPS || SUN_BY_RAYS

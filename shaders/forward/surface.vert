@@ -5,10 +5,10 @@ invariant gl_Position;
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec2 texCoord;
 layout(location = 2) in vec3 normal;
-out vec3 vPosition;
-out vec3 vNormal;
-out vec2 vTexCoord;
-out float vTangentPlane;  // where the plane through the vertex and perpendicular to its normal lies along that
+centroid out vec3 vPosition;
+centroid out vec3 vNormal;
+centroid out vec2 vTexCoord;
+centroid out float vTangentPlane;  // where the plane through the vertex and perpendicular to its normal lies along that
 
 void main() {
   vPosition = position;

@@ -1,8 +1,8 @@
 // Visible surfaces for techniques that start from the camera's pixels: normals, turned to the viewer as in forward
 // shading. The position is reconstructed from depth.
 #include "lib/material.glsl"
-in vec3 vNormal;
-in vec2 vTexCoord;
+centroid in vec3 vNormal;
+centroid in vec2 vTexCoord;
 layout(location = 0) out vec4 outNormal;
 
 void main() {

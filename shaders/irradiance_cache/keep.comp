@@ -38,7 +38,7 @@ void main() {
 #if FOLLOWS
   if (r.triangle == CACHE_UNPLACED || isMoved(r.position, grids.cascades[cascade].cellSize)) return;
   uint stateBefore = r.state;
-  r.state = (r.state & CACHE_FRONT) | CACHE_FIRST;
+  r.state = (r.state & (CACHE_FRONT | CACHE_NARROW)) | CACHE_FIRST;
   r.irradiance = vec3(0.0);
   r.paths = 0u;
   r.blendWeight = 0.0;

@@ -35,6 +35,22 @@ bool isBrightBeside(ivec4 cell, vec3 light) {
   return isBright;
 }
 
+// Share of a surface's cosine-weighted hemisphere in which another surface is much nearer than its cell is wide, and
+// than the camera is: a cell may be as large as a room.
+float shareBlockedNearby(Surface surface, uint triangle, ivec4 cell) {
+  const float kOfCell = 1.0 / 8.0, kOfView = 1.0 / 64.0;
+  const uint kRays = 32u;
+  float reach = min(kOfCell * grids.cascades[cell.w / CACHE_FACES].cellSize,
+                    kOfView * distance(surface.position, tracer.cameraPosition));
+  vec3 start = offsetRay(surface.position, surface.geometricNormal, surface.magnitude);
+  uint blocked = 0u;
+  for (uint i = 0u; i < kRays; ++i) {
+    vec2 xi = vec2((float(i) + 0.5) / float(kRays), fract(0.618034 * float(i)));
+    blocked += uint(anyHit(Ray(start, 0.0, cosineSample(surface.geometricNormal, xi), reach), triangle));
+  }
+  return float(blocked) / float(kRays);
+}
+
 void main() {
   uint index = gl_GlobalInvocationID.x;
   if (index >= recordCount(work.wanted)) return;
@@ -43,6 +59,11 @@ void main() {
     Hit hit;
     Surface surface;
     bool isThere = seenAt(int(records[index].pixel), hit, surface);
+    // A record in a slit, such as a pixel may see between a lamp and the ceiling that it hangs under, has the light of
+    // the slit alone: it would be wrong for the rest of its cell.
+    const float kSlit = 0.75;
+    float blocked = isThere ? shareBlockedNearby(surface, hit.triangle, records[index].cell) : 1.0;
+    isThere = isThere && blocked < kSlit;
     triangle = isThere ? hit.triangle : CACHE_NOWHERE;
     records[index].triangle = triangle;
     if (isThere) {
@@ -55,7 +76,8 @@ void main() {
       records[index].shown = before;
       records[index].blendWeight = 0.0;
       records[index].state = (surface.front ? CACHE_FRONT : 0u) | (known ? 0u : CACHE_FIRST) |
-                               (isBrightBeside(records[index].cell, before) ? CACHE_BRIGHT : 0u);
+                             (isBrightBeside(records[index].cell, before) ? CACHE_BRIGHT : 0u) |
+                             (blocked > 0.0 ? CACHE_NARROW : 0u);
     }
   }
   if (triangle == CACHE_NOWHERE) return;

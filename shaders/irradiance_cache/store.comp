@@ -3,6 +3,7 @@
 // with few paths is averaged with its neighbours (same face, surfaces that lean the same way), weighted by their paths.
 // This trades noise for a little blur, and both vanish once the record has all its paths and stands for itself.
 layout(local_size_x = 64) in;
+#include "lib/float_pairs.glsl"
 #include "irradiance_cache/common.glsl"
 #include "irradiance_cache/work.glsl"
 layout(std430, binding = CACHE_WORK_BUFFER) readonly restrict buffer CacheWorkBlock { CacheWork work; };
@@ -48,11 +49,33 @@ vec3 withNeighbours(CacheRecord record) {
     if (!neighbourAt(record.cell, i, other)) continue;
     uint paths = records[other].paths;
     float weight = share * float(paths) * smoothstep(0.5, 1.0, dot(records[other].normal, record.normal));
-    if (paths == 0u || !(weight > 0.0)) continue;
+    bool isNarrow = (records[other].state & ~record.state & CACHE_NARROW) != 0u;
+    if (paths == 0u || !(weight > 0.0) || isNarrow) continue;
     sum += weight * records[other].irradiance;
     weights += weight;
   }
   return sum / weights;
+}
+
+// The brightest irradiance of records around a cell that are not in a narrow place; -1: there are none.
+float brightestAround(ivec4 cell) {
+  float brightest = -1.0;
+  for (int i = 0; i < kNeighbours; ++i) {
+    uint other;
+    if (!neighbourAt(cell, i, other) || records[other].paths == 0u) continue;
+    if ((records[other].state & CACHE_NARROW) == 0u) brightest = max(brightest, largestOf(records[other].irradiance));
+  }
+  return brightest;
+}
+
+// Where another surface is much nearer than a cell is wide, a record may have light that the rest of its cell has not:
+// on a ceiling at the edge of a lamp that hangs under it, say. It shows at most kMuch times the brightest of those
+// around it that are not in such a place.
+float shareOfItsCell(CacheRecord record, vec3 target) {
+  const float kMuch = 2.0;
+  if ((record.state & CACHE_NARROW) == 0u) return 1.0;
+  float around = brightestAround(record.cell), brightest = largestOf(target);
+  return around >= 0.0 && brightest > kMuch * around ? kMuch * around / brightest : 1.0;
 }
 
 void main() {
@@ -63,7 +86,8 @@ void main() {
   int cascade = record.cell.w / CACHE_FACES;
   ivec3 place = record.cell.xyz - cache.firstCell[cascade].xyz;
   if (any(lessThan(place, ivec3(0))) || any(greaterThanEqual(place, ivec3(grids.shape.x)))) return;
-  show(index, record, withNeighbours(record));
+  vec3 target = withNeighbours(record);
+  show(index, record, shareOfItsCell(record, target) * target);
   imageStore(cacheIrradiance, ivec3(place.xy, record.cell.w * grids.shape.x + place.z),
              record.blendWeight * vec4(record.shown / cacheUnit(), 1.0));
 }

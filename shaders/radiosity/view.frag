@@ -7,17 +7,17 @@ const float kPi = 3.14159265358979;
 #include "lib/material_coat.glsl"
 #include "lib/coat_reflection.glsl"
 #endif
-in vec3 vPosition;
-in vec3 vIrradiance;
-in vec2 vTexCoord;
-in vec3 vCorner;
+centroid in vec3 vPosition;
+centroid in vec3 vIrradiance;
+centroid in vec2 vTexCoord;
+centroid in vec3 vCorner;
 #if INSPECTED
 flat in int vPatch;
 #include "forward/inspected.glsl"
 #endif
 #if DIRECT_RAYS
 #include "radiosity/direct_rays.glsl"
-in vec3 vNormal;
+centroid in vec3 vNormal;
 flat in vec3 vFace;
 flat in vec2 vFacePlace;
 #endif

@@ -9,15 +9,15 @@ layout(location = 1) in vec2 texCoord;
 layout(location = 2) in vec3 normal;
 // five floats per patch: normal, distance of its plane, largest coordinate
 layout(std430, binding = 2) readonly buffer Faces { float faces[]; };
-out vec3 vNormal;
+centroid out vec3 vNormal;
 flat out vec3 vFace;
 flat out vec2 vFacePlace;
 #endif
 layout(std430, binding = 0) readonly buffer Light { float irradiances[]; };  // three floats per corner
-out vec3 vPosition;
-out vec3 vIrradiance;
-out vec2 vTexCoord;
-out vec3 vCorner;  // barycentric
+centroid out vec3 vPosition;
+centroid out vec3 vIrradiance;
+centroid out vec2 vTexCoord;
+centroid out vec3 vCorner;  // barycentric
 #if INSPECTED
 flat out int vPatch;
 #endif

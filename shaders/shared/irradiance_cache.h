@@ -54,6 +54,7 @@ SHARED_BEGIN
 #define CACHE_ALONE 4u  // of a point that keeps light of further bounces: it lights no other surface
 #define CACHE_BRIGHT 8u
 #define CACHE_KEPT 16u   // what its paths hit is kept: CacheHit
+#define CACHE_NARROW 32u  // another surface is much nearer than its cell is wide
 
 // What a path has hit
 #define CACHE_HITS 64        // paths of a record whose hits are kept

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cctype>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -247,6 +248,25 @@ TEST(MtlFile, NumbersAreReadAsTheyAreWritten) {
   EXPECT_TRUE(loggedWarnings().empty()) << warnings();
 }
 
+TEST(MtlFile, AColourThatCannotBeIsNamed) {
+  const TempFolder folder;
+  const auto expect = [&](const std::string& line, const glm::vec3& diffuse, const std::string& said) {
+    EXPECT_EQ(loadMtl(folder, "newmtl a\n" + line + "\n").materials[0].diffuse, diffuse) << line;
+    EXPECT_EQ(loggedWarnings().size(), 1u) << line << warnings();
+    EXPECT_TRUE(contains(warnings(), said)) << line << warnings();
+  };
+  expect("Kd 2 0.5 -0.5", {1.0f, 0.5f, 0.0f}, "material 'a': Kd 2 0.5 -0.5, which counts as 1 0.5 0");
+  expect("Kd nan 0.5 0.5", {0.0f, 0.5f, 0.5f}, "Kd nan 0.5 0.5, which counts as 0 0.5 0.5");
+  expect("Kd .2 .4", {0.2f, 0.4f, 0.2f}, "Kd 0.2 0.4 (of two numbers)");
+}
+
+TEST(MtlFile, ABackslashContinuesALine) {
+  const TempFolder folder;
+  const Scene scene = loadMtl(folder, "newmtl a\nKd .2 \\\n .4 .6\n# a comment \\\nNi 1.5\n");
+  EXPECT_EQ(scene.materials[0].diffuse, glm::vec3(0.2f, 0.4f, 0.6f));
+  EXPECT_TRUE(loggedWarnings().empty()) << warnings();
+}
+
 TEST(MtlFile, KeysThatAreNotReadAreOneWarning) {
   const TempFolder folder;
   const Scene scene =
@@ -423,7 +443,9 @@ TEST(StlFile, BothKindsAreGreyAndWithoutAHighlight) {
   const std::string text =
       "solid a part\n facet normal 0 0 1\n  outer loop\n   vertex 0 0 0\n   vertex 1 0 0\n   vertex 0 1 0\n"
       "  endloop\n endfacet\nendsolid a part\n";
-  for (const std::string& content : {text, binaryStl("made by hand", {0}), binaryStl("solid by another", {0})}) {
+  std::string loud = text;
+  for (char& c : loud) c = static_cast<char>(std::toupper(c));
+  for (const std::string& content : {text, loud, binaryStl("made by hand", {0}), binaryStl("solid by another", {0})}) {
     const Scene scene = load(folder.write("m.stl", content));
     EXPECT_EQ(scene.triangleCount(), 1u);
     ASSERT_EQ(scene.materials.size(), 1u);

@@ -1,10 +1,12 @@
-// Emissive surfaces as bodies: what hangs together, and the ball around it.
+// Parts of meshes: what hangs together, what of it a picture shows large; emissive ones as bodies, with balls around.
 #include "irradiance_cache/small_lamps.hpp"
+#include "scene/parts.hpp"
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace lucerna {
 namespace {
@@ -36,6 +38,20 @@ TEST(EmissiveBodies, AreWhatHangsTogetherSmallestFirst) {
   ASSERT_EQ(bodies.size(), 2u);
   EXPECT_EQ(bodies[0], glm::vec4(5.5f, 0.0f, -0.5f, std::sqrt(0.5f)));
   EXPECT_EQ(bodies[1], glm::vec4(1.0f, 0.0f, 1.0f, std::sqrt(8.0f)));
+}
+
+TEST(Parts, AreLargeInViewByTheirShareOfItsHeight) {
+  Scene scene;
+  scene.materials.resize(1);
+  addSquare(scene, {0, 0, 0}, 100.0f, 0);
+  addSquare(scene, {50, 1, 50}, 1.0f, 0);  // sqrt(2) across: a twentieth of 28.3
+  EXPECT_EQ(connectedParts(scene, [](const Mesh&) { return true; }).size(), 2u);
+  Camera& camera = scene.cameras.emplace_back();
+  camera.verticalFov = 2.0 * std::atan(0.5);  // as high as far
+  for (const auto& [height, expected] : {std::pair{100.0, 1u}, {30.0, 1u}, {28.0, 2u}}) {
+    camera.position = {50.5, 1.0 + height, 50.5};
+    EXPECT_EQ(partsLargeInView(scene).size(), expected) << height;
+  }
 }
 
 TEST(EmissiveBodies, NothingEmits) {
