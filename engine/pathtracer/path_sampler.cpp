@@ -29,7 +29,7 @@ PathSampler::~PathSampler() = default;
 
 std::string PathSampler::versionOf(PixelFilter filter, bool allMaterials, int bounces) {
   std::string text =
-      fmt::format("path tracer 6, filter {}, {}", nameOf(filter), allMaterials ? "all materials" : "lambert");
+      fmt::format("path tracer 7, filter {}, {}", nameOf(filter), allMaterials ? "all materials" : "lambert");
   if (bounces > 0) text += fmt::format(", {} bounces", bounces);
   return text;
 }

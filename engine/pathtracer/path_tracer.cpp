@@ -155,7 +155,7 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
   features_.denseMedia = features_.denseMedia && features_.dielectrics && settings.walks && !published &&
                          (!settings.nextEvent || lampsOutside_);
   scene_.emplace(scene, features_, capabilities,
-                 PathScene::Settings{settings.diffuseOnly, settings.nextEvent, settings.rays},
+                 PathScene::Settings{settings.diffuseOnly, settings.nextEvent, settings.rays, asksSunApart()},
                  boundaries_.rankOfMaterial);
   scene_->fill(constants_);
   sceneHash_ = scene_->hash();
@@ -520,6 +520,12 @@ bool PathTracer::submit(std::uint32_t samples, Passes passes) {
 bool PathTracer::seeksByManifolds() const {
   return features_.anyLight() && settings_.nextEvent && !settings_.diffuseOnly &&
          settings_.deviations == PathDeviations{} && settings_.transport != Transport::oneBounceUnoccluded;
+}
+
+// Not where media and manifolds draw single lights, the sun among them. Published forms take one light as it is drawn.
+bool PathTracer::asksSunApart() const {
+  const bool drawsSingle = hasInteriors() || (seeksByManifolds() && (features_.mirrors || features_.conductors));
+  return !drawsSingle && settings_.deviations == PathDeviations{};
 }
 
 // Published forms take one light as it is drawn, and a single one without a size gives no choice.

@@ -162,6 +162,8 @@ class PathTracer {
   void bind(const gl::Program& program);
   /// Whether lamps are sought by way of refracting boundaries and mirrors.
   bool seeksByManifolds() const;
+  /// Whether next-event estimation asks the sun at each surface, and draws only other lights.
+  bool asksSunApart() const;
   /// Samples of lights that next-event estimation chooses one from.
   int lightCandidates() const;
   /// Whether it pays to know what light reaches where: lights of several kinds, and no body that light passes through.

@@ -3,6 +3,7 @@
 // Lamps (sun, spots, omnidirectional), each emissive triangle and an environment picture are entries of one alias table
 // [Vose1991]. Half of the probability goes in equal parts to the lamps, to all triangles together and to the
 // environment, half in proportion to power, so that none is neglected; any choice converges to the same picture.
+// Programs that take more than one sample may take one of the sun each time, and draw the others from other lights.
 #pragma once
 
 #include "scene/scene.hpp"
@@ -33,7 +34,10 @@ struct LightTable {
                                    ///< empty: nothing emits
   double environmentPick = 0.0;  ///< probability of sampling the environment picture
 };
-LightTable lightTable(const Scene& scene, const glm::dvec3& origin);
+/// sunApart: the first entry is the sun, of probability 1, and the alias table is that of the others; see hasSunApart.
+LightTable lightTable(const Scene& scene, const glm::dvec3& origin, bool sunApart = false);
+/// Whether that is possible and pays: a sun with other lights, none of them an environment picture.
+bool hasSunApart(const std::vector<shared::PathLight>& lights);
 
 /// Sampling tables of an environment picture: a row, then a texel of it, each by an alias table [Vose1991] in integers,
 /// so that pictures of any size are sampled by texel (a float counts to 2^24). The picture must not be black.

@@ -134,7 +134,8 @@ void PathScene::uploadLights(const Scene& scene) {
     coats_->upload(gl::Texels::rgbaFloat, coatTable().data());
   }
   if (settings_.nextEvent) {
-    LightTable table = lightTable(scene, rays_.origin());
+    LightTable table = lightTable(scene, rays_.origin(), settings_.sunApart);
+    sunApart_ = settings_.sunApart && lucerna::hasSunApart(table.lights);
     pickDensity_ = std::move(table.pickDensity);
     lightCount_ = table.lights.size();
     if (lightCount_ > 0) lights_ = storageOf("path lights", table.lights, *capabilities_);
@@ -325,6 +326,7 @@ gl::ShaderFlags PathScene::flags() const {
           {"POINTS", hasLights() && features_.pointLights},
           {"ENVIRONMENT", features_.environment},
           {"ENVIRONMENT_PICTURE", features_.environmentPicture},
+          {"SUN_APART", sunApart_},
           {"NEXT_EVENT", hasLights()}};
 }
 

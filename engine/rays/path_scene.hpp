@@ -44,6 +44,7 @@ class PathScene {
     bool diffuseOnly = false;  ///< treat every scattering surface as Lambert with its wholeReflectance (scene/coat.hpp)
     bool nextEvent = true;  ///< with a table of lights for sampling
     RaySceneSettings rays;
+    bool sunApart = false;  ///< where it pays, the sun is not drawn with other lights (light_table.hpp)
   };
   /// `features`: the scene's, less those that the programs leave out. rankOfMaterial: for closed boundaries
   /// (media.hpp); may be empty. Throws Error(missingCapability) if the scene exceeds the driver's limits.
@@ -62,6 +63,7 @@ class PathScene {
   void fill(shared::PathConstants& constants) const;
   bool hasLights() const { return lightCount_ > 0; }
   std::size_t lightCount() const { return lightCount_; }  ///< entries of the table: each emissive triangle is one
+  bool hasSunApart() const { return sunApart_; }
   bool hasCoats() const { return hasCoats_; }
   const RayScene& rays() const { return rays_; }
   const glm::dvec3& origin() const { return rays_.origin(); }
@@ -85,6 +87,7 @@ class PathScene {
   bool isTextured_ = false;
   int triangleWords_ = 4;
   std::size_t lightCount_ = 0;
+  bool sunApart_ = false;
   std::vector<float> pickDensity_;  ///< of each triangle, or none
   std::vector<std::uint32_t> triangleValues_;  ///< as uploaded; only kept where the scene moves
   shared::PathConstants constants_{};

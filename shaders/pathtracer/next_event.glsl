@@ -1,10 +1,12 @@
 // Next-event estimation at a surface: one shadow ray, to a light chosen by what it gives there. Of CANDIDATES samples
 // of lights one is chosen in proportion to what it would bring if nothing blocked it, times the share of such light
 // that reaches the cell, and now and then any of them: resampled importance sampling [Talbot2005]. It is unbiased for
-// any shares above 0, and for candidates that depend on each other, so they are stratified.
+// any shares above 0, and for candidates that depend on each other, so they are stratified. With SUN_APART one of them
+// is the sun: where it shines, a number of candidates of the sun that differs from path to path would be noise.
 //
 // Flags: CANDIDATES; LIGHT_VISIBILITY: shares are known, else 1.
 #if NEXT_EVENT
+const uint kDrawn = uint(CANDIDATES - SUN_APART);  // candidates from the alias table
 const float kByLight = 0.9;  // probability of a choice by light; else by number: a cell may have a corner that is lit
 #if LIGHT_VISIBILITY
 #include "pathtracer/light_cells.glsl"
@@ -14,7 +16,7 @@ layout(binding = 6) uniform usamplerBuffer lightCounts;  // light_visibility.com
 float reachingShare(uint cell, uint kind) {
   int at = int(2u * (cell * kLightKinds + kindOfLight(kind)));
   float tried = float(texelFetch(lightCounts, at).x), reached = float(texelFetch(lightCounts, at + 1).x);
-  return (reached + 0.05) / (tried + 0.1);
+  return (reached + 0.01) / (tried + 0.02);
 }
 #endif
 
@@ -58,15 +60,17 @@ void addNextEvent(Path path, Surface surface, uint triangle, Bsdf bsdf, float io
   float side = 0.0, chosenWeight = 1.0, sum = 0.0;
   uint count = 0u, chosen = 0u;
   for (uint k = 0u; k < uint(CANDIDATES); ++k) {
-    uvec4 pickWords = uvec4(stratifiedWord(words.x, k, uint(CANDIDATES)), words.yzw + k * 0x9e3779b9u);
+    uvec4 pickWords = uvec4(stratifiedWord(words.x, k % kDrawn, kDrawn), words.yzw + k * 0x9e3779b9u);
     vec2 shift = vec2(float(k) / float(CANDIDATES), 0.618034 * float(k));
-    if (!sampleLight(surface.position, fract(xi + shift), pickWords, candidate)) continue;
+    uint asked = k < kDrawn ? pick(pickWords) : 0u;  // the sun last
+    if (!sampleOf(lights[asked], surface.position, fract(xi + shift), pickWords, candidate)) continue;
     float candidateSide = dot(candidate.direction, candidate.pdf == 0.0 ? towards : surface.geometricNormal);
     vec3 brought = unblockedLight(path, bsdf, candidate, candidateSide);
     if (all(equal(brought, vec3(0.0)))) continue;
+    if (k < kDrawn) brought /= float(kDrawn);
     float weight = clamp(dot(path.throughput, brought), 1e-30, 1e30);  // sums and quotients stay finite
 #if LIGHT_VISIBILITY
-    weight *= reachingShare(cell, lights[pickedLight].kind);
+    weight *= reachingShare(cell, lights[asked].kind);
 #endif
     ++count;
     sum += weight;
@@ -75,10 +79,10 @@ void addNextEvent(Path path, Surface surface, uint triangle, Bsdf bsdf, float io
     light = candidate;
     side = candidateSide;
     chosenWeight = weight;
-    chosen = pickedLight;
+    chosen = asked;
   }
   if (count == 0u) return;
-  contribution /= (kByLight * chosenWeight / sum + (1.0 - kByLight) / float(count)) * float(CANDIDATES);
+  contribution /= kByLight * chosenWeight / sum + (1.0 - kByLight) / float(count);
   pickedLight = chosen;
 
   // Its ray.

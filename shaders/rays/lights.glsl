@@ -1,6 +1,6 @@
 // Samples one light, chosen by its share of the scene's power, and a point on it: storage block 4. Flags: NEXT_EVENT,
 // SUN, SPOTS, POINTS, EMISSION, ENVIRONMENT_PICTURE. A constant environment is left to scattered rays, which sample it
-// optimally.
+// optimally. SUN_APART: the sun is the first light, and is not drawn with the others.
 #include "lib/spot.glsl"
 #include "lib/tangent.glsl"
 #include "lib/round_light.glsl"
@@ -20,7 +20,7 @@ uint pickedLight;  // by sampleLight; for callers that need it
 
 // The light that these words select.
 uint pick(uvec4 words) {
-  uint i = scaledWord(words.x, uint(lights.length()));
+  uint i = uint(SUN_APART) + scaledWord(words.x, uint(lights.length() - SUN_APART));
   return unitFloat(words.y) >= lights[i].threshold ? lights[i].alias : i;
 }
 

@@ -267,6 +267,26 @@ TEST_F(PathTracerTest, TheErrorFallsWithTheRootOfTheSamplesAndIsHonest) {
   }
 }
 
+// In a closed box that emits 1 and reflects a, a path brings 1 + a + a^2 ... up to a weight of a^k below 1/4. From
+// there it goes on with a weight of 1/4: first with probability 4 a^k, then each time with a, since throughput is a/4.
+// The number of those hits is geometric. Roulette from a weight of 1 on has 3.7 times this deviation.
+TEST_F(PathTracerTest, RouletteBringsNoMoreNoiseThanFromAQuarterOn) {
+  constexpr double kA = 0.7, kFirst = 4.0 * kA * kA * kA * kA;  // below 1/4 after four scatterings
+  SceneBuilder builder;
+  builder.scene().sun.reset();
+  const int material = builder.material(glm::vec3(0.7f));
+  builder.materialAt(material).emission = glm::vec3(1.0f);
+  addBox(builder, 1.0, material, true);
+  PathTracer::Settings settings = sized(8);
+  settings.nextEvent = false;
+  constexpr std::uint32_t kSamples = 4096;
+  const auto s = tracer(builder.scene(), lookingAt({0.0, 0.0, 0.0}, {0.3, 0.2, 1.0}), settings, kSamples).statistics();
+  EXPECT_LT(deviations(s, glm::dvec3(1.0 / (1.0 - kA))), 4.0);
+  const double squares = kA / std::pow(1.0 - kA, 2.0) + std::pow(1.0 - kA, -2.0), mean = kFirst / (1.0 - kA),
+               expected = 0.25 * std::sqrt(kFirst * squares - mean * mean);
+  EXPECT_NEAR(s.standardError * std::sqrt(double{kSamples}) / expected, 1.0, 0.02);
+}
+
 TEST_F(PathTracerTest, ComponentsAddUp) {
   const Scene scene = litBox();
   PathTracer::Settings settings = sized(32);
