@@ -63,14 +63,15 @@ void addNextEvent(Path path, Surface surface, uint triangle, Bsdf bsdf, float io
     uvec4 pickWords = uvec4(stratifiedWord(words.x, k % kDrawn, kDrawn), words.yzw + k * 0x9e3779b9u);
     vec2 shift = vec2(float(k) / float(CANDIDATES), 0.618034 * float(k));
     uint asked = k < kDrawn ? pick(pickWords) : 0u;  // the sun last
-    if (!sampleOf(lights[asked], surface.position, fract(xi + shift), pickWords, candidate)) continue;
+    PathLight source = lights[asked];
+    if (!sampleOf(source, surface.position, fract(xi + shift), pickWords, candidate)) continue;
     float candidateSide = dot(candidate.direction, candidate.pdf == 0.0 ? towards : surface.geometricNormal);
     vec3 brought = unblockedLight(path, bsdf, candidate, candidateSide);
     if (all(equal(brought, vec3(0.0)))) continue;
     if (k < kDrawn) brought /= float(kDrawn);
     float weight = clamp(dot(path.throughput, brought), 1e-30, 1e30);  // sums and quotients stay finite
 #if LIGHT_VISIBILITY
-    weight *= reachingShare(cell, lights[asked].kind);
+    weight *= reachingShare(cell, source.kind);
 #endif
     ++count;
     sum += weight;

@@ -72,7 +72,7 @@ class BenchProof : public test::SharedProgramsTest {
 // for its longest path, a cost that does not grow with the samples: over 64x64 pixels it is small from 16 samples on
 // (over 32x32 and in passes that double, 32 cost 1.4 times what they do in a long run, and the slope by time was -0.52
 // to -0.56). The short form has fewer points and none of the times, whose slope takes long runs to be seen.
-TEST_F(BenchProof, ErrorFallsWithSlopeMinusOneHalfOverTwoDecades) {
+TEST_F(BenchProof, ErrorFallsAtLeastWithSlopeMinusOneHalfOverTwoDecades) {
   const bool isLong = test::longTests();
   const Scene scene = loadScene(LUCERNA_SOURCE_DIR "/assets/cornell/cornell.json");
   struct Painted {
@@ -118,9 +118,14 @@ TEST_F(BenchProof, ErrorFallsWithSlopeMinusOneHalfOverTwoDecades) {
   for (std::size_t i = 0; i < errors.size(); ++i) points += fmt::format(" {:.4f} in {:.4f} s,", errors[i], seconds[i]);
   std::printf("samples^(%.3f +- %.3f), seconds^(%.3f +- %.3f): NRMSE%s\n", bySamples.slope, bySamples.error,
               byTime.slope, byTime.error, points.c_str());
-  EXPECT_NEAR(bySamples.slope, -0.5, 0.05) << "+- " << bySamples.error << ", NRMSE" << points;
+  // Independent samples have -1/2. The first events' points are stratified (Owen-scrambled Sobol points), so that where
+  // they have much of the noise the error falls a little faster, here as samples^-0.56.
+  constexpr double kIndependent = -0.5, kSpread = 0.05, kStratified = -0.65;
+  EXPECT_LT(bySamples.slope, kIndependent + kSpread) << "+- " << bySamples.error << ", NRMSE" << points;
+  EXPECT_GT(bySamples.slope, kStratified) << "+- " << bySamples.error << ", NRMSE" << points;
   if (!isLong) return;
-  EXPECT_NEAR(byTime.slope, -0.5, 0.05) << "+- " << byTime.error << ", NRMSE" << points;
+  EXPECT_LT(byTime.slope, kIndependent + kSpread) << "+- " << byTime.error << ", NRMSE" << points;
+  EXPECT_GT(byTime.slope, kStratified) << "+- " << byTime.error << ", NRMSE" << points;
   EXPECT_GE(seconds.back() / seconds.front(), 100.0) << points;
 }
 
