@@ -416,6 +416,19 @@ measure::CostAndError pointOf(const ErrorRow& row, const ErrorRow& errors) {
           atNoise ? 0.0 : orNone(number(errors, "l2_error"))};
 }
 
+/// The front by time and l2 of all light among some rows.
+template <class IsCandidate>
+std::vector<bool> frontAmong(const std::vector<ErrorRow>& rows, const IsCandidate& isCandidate) {
+  std::vector<measure::CostAndError> points;
+  for (const ErrorRow& row : rows) {
+    points.push_back(pointOf(row, row));
+    if (!isCandidate(row)) points.back().cost = NAN;
+  }
+  return measure::paretoFront(points);
+}
+
+bool isInsideFront(const ErrorRow& row) { return row.at("inside_front").get<bool>(); }
+
 }  // namespace
 
 void markFront(std::vector<ErrorRow>& rows) {
@@ -435,31 +448,22 @@ void markFront(std::vector<ErrorRow>& rows) {
     for (std::size_t k = 0; k < group.size(); ++k) rows[group[k]]["inside_front"] = static_cast<bool>(front[k]);
   }
   // The remaining rows are ranked by all light.
-  std::vector<measure::CostAndError> points;
-  for (const ErrorRow& row : rows) {
-    points.push_back(pointOf(row, row));
-    if (!row.at("inside_front").get<bool>()) points.back().cost = NAN;
-  }
-  const std::vector<bool> front = measure::paretoFront(points);
+  const std::vector<bool> front = frontAmong(rows, isInsideFront);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     int rank = 0;  // number of front rows that are at most as slow
-    for (std::size_t j = 0; j < rows.size(); ++j) rank += front[i] && front[j] && points[j].cost <= points[i].cost;
+    for (std::size_t j = 0; j < rows.size(); ++j)
+      rank += front[i] && front[j] && number(rows[j], "ms") <= number(rows[i], "ms");
     rows[i]["pareto"] = static_cast<bool>(front[i]);
     rows[i]["front"] = rank;
   }
 }
 
 std::vector<const ErrorRow*> correctedFront(const std::vector<ErrorRow>& rows) {
-  std::vector<const ErrorRow*> corrected, front;
-  std::vector<measure::CostAndError> points;
-  for (const ErrorRow& row : rows) {
-    if (!row.at("inside_front").get<bool>() || row.at("fidelity") == "original") continue;
-    corrected.push_back(&row);
-    points.push_back(pointOf(row, row));
-  }
-  const std::vector<bool> isOnFront = measure::paretoFront(points);
-  for (std::size_t i = 0; i < corrected.size(); ++i)
-    if (isOnFront[i]) front.push_back(corrected[i]);
+  const std::vector<bool> isOnFront =
+      frontAmong(rows, [](const ErrorRow& row) { return isInsideFront(row) && row.at("fidelity") != "original"; });
+  std::vector<const ErrorRow*> front;
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if (isOnFront[i]) front.push_back(&rows[i]);
   std::ranges::sort(front, {}, [](const ErrorRow* row) { return number(*row, "ms"); });
   return front;
 }

@@ -14,16 +14,17 @@ constexpr double kFilterTexels =
     4.0;  // border of two texels per side, so that the filter and the normal offset stay inside the map
 }
 
+bool hasFewTexels(const Bounds& part, double texel) {
+  constexpr double kLeastAcross = 4.0;
+  const glm::dvec3 extent = part.extent();
+  const double across = std::max({extent.x, extent.y, extent.z});
+  return across > 0.0 && across < kLeastAcross * texel;
+}
+
 int neededCascades(const Scene& scene, std::span<const Bounds> parts, double texel) {
-  const auto isTooSmall = [&](const Bounds& box) {
-    const glm::dvec3 extent = box.extent();
-    const double across = std::max({extent.x, extent.y, extent.z});
-    return across > 0.0 && across < kLeastTexelsAcross * texel;
-  };
-  const bool hasSmall =
-      std::ranges::any_of(parts, isTooSmall) || std::ranges::any_of(scene.meshes, [&](const Mesh& mesh) {
-        return mesh.indexCount > 0 && isTooSmall(mesh.bounds);
-      });
+  const auto isSmall = [&](const Bounds& part) { return hasFewTexels(part, texel); };
+  const auto isSmallMesh = [&](const Mesh& mesh) { return mesh.indexCount > 0 && isSmall(mesh.bounds); };
+  const bool hasSmall = std::ranges::any_of(parts, isSmall) || std::ranges::any_of(scene.meshes, isSmallMesh);
   return hasSmall ? SUN_MAX_CASCADES : 1;
 }
 

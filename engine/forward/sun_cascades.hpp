@@ -27,8 +27,8 @@ struct SunCascadeSettings {
                        ///< nearly uniform
 };
 
-/// A part of a scene needs a map's texels to be this many times narrower than it, to have a shadow.
-constexpr double kLeastTexelsAcross = 4.0;
+/// Whether a part of a scene has too few texels of a map across to have a shadow. texel: their width there.
+bool hasFewTexels(const Bounds& part, double texel);
 
 /// The number of cascades that kAuto stands for. texel: side of a texel of a map of the whole scene, scene units;
 /// parts: those that a picture shows large (scene/parts.hpp).

@@ -59,12 +59,6 @@ AliasTable aliasTable(const std::vector<double>& weights) {
   return table;
 }
 
-// Under a picture of a sky the samples are better both drawn: one of each has 1.2 times the squared error in the
-// atrium, where shade that the cell of a surface does not know leaves the sky to few paths.
-bool hasSunApart(const std::vector<shared::PathLight>& lights) {
-  return lights.size() > 1 && lights.front().kind == PATH_LIGHT_SUN && lights.back().kind != PATH_LIGHT_ENVIRONMENT;
-}
-
 LightTable lightTable(const Scene& scene, const glm::dvec3& origin, bool sunApart) {
   LightTable table;
   const auto place = [&](const glm::dvec3& p) { return glm::vec3(p - origin); };
@@ -149,9 +143,13 @@ LightTable lightTable(const Scene& scene, const glm::dvec3& origin, bool sunApar
   if (table.lights.empty()) return table;
   const bool environment = table.lights.back().kind == PATH_LIGHT_ENVIRONMENT;
 
+  // Under a picture of a sky the samples are better both drawn: one of each has 1.2 times the squared error in the
+  // atrium, where shade that the cell of a surface does not know leaves the sky to few paths.
+  table.sunApart = sunApart && table.lights.size() > 1 && table.lights.front().kind == PATH_LIGHT_SUN && !environment;
+  const std::size_t first = table.sunApart ? 1 : 0;
+  if (table.sunApart) table.lights.front().probability = 1.0f;
+
   // Picked half by power, half evenly; for the even half all triangles together count as one light.
-  const std::size_t first = sunApart && hasSunApart(table.lights) ? 1 : 0;
-  if (first == 1) table.lights.front().probability = 1.0f;
   double sum = 0.0, triangleSum = 0.0;
   for (std::size_t i = first; i < powers.size(); ++i) {
     sum += powers[i];

@@ -33,11 +33,10 @@ struct LightTable {
   std::vector<float> pickDensity;  ///< per triangle: probability density of sampling a point of it, per unit of area;
                                    ///< empty: nothing emits
   double environmentPick = 0.0;  ///< probability of sampling the environment picture
+  bool sunApart = false;  ///< the first light is the sun, of probability 1; the alias table is that of the others
 };
-/// sunApart: the first entry is the sun, of probability 1, and the alias table is that of the others; see hasSunApart.
+/// sunApart: where that is possible and pays, with a sun and other lights, none of them an environment picture.
 LightTable lightTable(const Scene& scene, const glm::dvec3& origin, bool sunApart = false);
-/// Whether that is possible and pays: a sun with other lights, none of them an environment picture.
-bool hasSunApart(const std::vector<shared::PathLight>& lights);
 
 /// Sampling tables of an environment picture: a row, then a texel of it, each by an alias table [Vose1991] in integers,
 /// so that pictures of any size are sampled by texel (a float counts to 2^24). The picture must not be black.

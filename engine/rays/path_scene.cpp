@@ -135,7 +135,7 @@ void PathScene::uploadLights(const Scene& scene) {
   }
   if (settings_.nextEvent) {
     LightTable table = lightTable(scene, rays_.origin(), settings_.sunApart);
-    sunApart_ = settings_.sunApart && lucerna::hasSunApart(table.lights);
+    sunApart_ = table.sunApart;
     pickDensity_ = std::move(table.pickDensity);
     lightCount_ = table.lights.size();
     if (lightCount_ > 0) lights_ = storageOf("path lights", table.lights, *capabilities_);

@@ -63,7 +63,6 @@ class PathScene {
   void fill(shared::PathConstants& constants) const;
   bool hasLights() const { return lightCount_ > 0; }
   std::size_t lightCount() const { return lightCount_; }  ///< entries of the table: each emissive triangle is one
-  bool hasSunApart() const { return sunApart_; }
   bool hasCoats() const { return hasCoats_; }
   const RayScene& rays() const { return rays_; }
   const glm::dvec3& origin() const { return rays_.origin(); }

@@ -47,6 +47,14 @@ glm::dmat4 clipFromWorld(const Camera& camera, const Bounds& bounds, double near
   return clipFromView * glm::lookAt(camera.position, camera.position + camera.direction, camera.up);
 }
 
+gl::RasterState stateOf(const GeometryTechnique::Sides& sides, gl::Depth depth) {
+  gl::RasterState state;
+  state.depth = depth;
+  state.cull = sides.cull;
+  state.polygonOffset = sides.polygonOffset;
+  return state;
+}
+
 /// Names of the techniques of which it is true, for messages.
 std::string techniquesThat(const std::function<bool(const TechniqueEntry&)>& holds) {
   std::vector<std::string_view> names;
@@ -109,7 +117,10 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
 void Renderer::makeLights(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene) {
   const TechniqueEntry& technique = techniqueNamed(settings_.technique);
   const Scene& drawn = gpuScene_->scene();
-  near_ = nearPlane(drawn, aspect());
+  if (std::exchange(surfacesAreNew_, false)) {
+    near_ = nearPlane(drawn, aspect());
+    largeParts_.reset();
+  }
   if (scene.sun) sunFrustum_ = fitSunFrustum(drawn, scene.sun->direction);
   if (!localLights_) chooseLamps(programs);
   if (showsDirect()) makeShadowMaps(programs);
@@ -151,16 +162,18 @@ void Renderer::chooseLamps(gl::ProgramLibrary& programs) {
                spots_.size() + points_.size() + plainLamps_.size(), mostByRays);
 }
 
+// Found when they are first asked for, and again after surfaces or cameras have moved.
+std::span<const Bounds> Renderer::largeParts() {
+  if (!largeParts_) largeParts_ = partsLargeInView(gpuScene_->scene());
+  return *largeParts_;
+}
+
 // Lamps in whose maps a part that is large in the picture would have few texels, or none.
 void Renderer::leaveCoarseMapsToRays() {
-  const std::vector<Bounds> parts = partsLargeInView(gpuScene_->scene());
   const auto isCoarse = [&](const LightViews& lamp) {
     const int size = lamp.omnidirectional() ? settings_.lights.pointSize : settings_.lights.spotSize;
-    return std::ranges::any_of(parts, [&](const Bounds& part) {
-      const glm::dvec3 extent = part.extent();
-      const double across = std::max({extent.x, extent.y, extent.z});
-      const double texel = lamp.texelWidth(size) * glm::distance(part.centre(), lamp.position);
-      return across > 0.0 && across < kLeastTexelsAcross * texel;
+    return std::ranges::any_of(largeParts(), [&](const Bounds& part) {
+      return hasFewTexels(part, lamp.texelWidth(size) * glm::distance(part.centre(), lamp.position));
     });
   };
   for (std::vector<LightViews>* lamps : {&spots_, &points_}) {
@@ -176,6 +189,7 @@ bool Renderer::follow(const gl::Context& context, gl::ProgramLibrary& programs, 
   exposure_ = settings_.exposure.value_or(sceneExposure_);
   if (geometry_ || !(analyse(scene) == features_) || floatingOrigin(scene.bounds) != origin_) return false;
   view_.reset();
+  surfacesAreNew_ = surfacesAreNew_ || !change.meshes.empty() || change.views;
   const bool movesCamerasAlone = change.meshes.empty() && !change.anyLight() && !change.materials && !change.media;
   if (movesCamerasAlone) return true;
   sceneMoves_ = true;
@@ -303,7 +317,7 @@ void Renderer::makeShadowMaps(gl::ProgramLibrary& programs) {
   if (SunShadow::isNeeded(features_) && !sunShadow_) {
     SunShadow::Settings shadow = settings_.shadow;
     if (shadow.cascades.cascades == SunCascadeSettings::kAuto)
-      shadow.cascades.cascades = neededCascades(gpuScene_->scene(), partsLargeInView(gpuScene_->scene()),
+      shadow.cascades.cascades = neededCascades(gpuScene_->scene(), largeParts(),
                                                 std::max(sunFrustum_.width, sunFrustum_.height) / shadow.size);
     sunShadow_.emplace(programs, *gpuScene_, shadow);
     sunShadowMade_ = false;
@@ -505,11 +519,7 @@ std::span<const GeometryTechnique::Sides> Renderer::sides() const {
 void Renderer::drawDepth(const gl::Framebuffer& target, const FrameView& view) {
   const auto all = sides();
   for (const GeometryTechnique::Sides& sides : all) {
-    gl::RasterState state;
-    state.depth = gl::Depth::lessWrite;
-    state.cull = sides.cull;
-    state.polygonOffset = sides.polygonOffset;
-    const gl::RasterPass pass("depth", target, state);
+    const gl::RasterPass pass("depth", target, stateOf(sides, gl::Depth::lessWrite));
     if (&sides == &all.front()) pass.clearDepth();
     gpuScene_->draw(depthPrograms_, view.drawn());
   }
@@ -530,11 +540,7 @@ void Renderer::shade(const FrameView& view, bool depthIsDrawn) {
   if (multisampled_) drawDepth(target, view);
   bindForShading();
   for (const GeometryTechnique::Sides& sides : all) {
-    gl::RasterState state;
-    state.depth = gl::Depth::equalReadOnly;
-    state.cull = sides.cull;
-    state.polygonOffset = sides.polygonOffset;
-    const gl::RasterPass pass("surfaces", target, state);
+    const gl::RasterPass pass("surfaces", target, stateOf(sides, gl::Depth::equalReadOnly));
     const bool showsBackground = settings_.component != Component::indirect;
     if (&sides == &all.front())
       pass.clearColor(0, glm::vec4(showsBackground ? gpuScene_->scene().background : glm::vec3(0.0f), 1.0f));

@@ -109,6 +109,8 @@ class Renderer {
   glm::vec3 shownSky(const Scene& scene) const;
   void chooseLamps(gl::ProgramLibrary& programs);
   void leaveCoarseMapsToRays();
+  /// Parts that a picture shows large: their shadows need texels (forward/sun_cascades.hpp).
+  std::span<const Bounds> largeParts();
   void makeShadowMaps(gl::ProgramLibrary& programs);
   void loadPrograms(gl::ProgramLibrary& programs);
   void allocateTargets();
@@ -156,7 +158,9 @@ class Renderer {
   GeometryTechnique* geometry_ = nullptr;  ///< the technique, if it is one of these
   PictureTechnique* picture_ = nullptr;
   std::optional<GpuScene> gpuScene_;  ///< not with a PictureTechnique
+  bool surfacesAreNew_ = true;  ///< or cameras; near_ and largeParts_ are of others
   double near_ = 1.0;  ///< distance of the near plane
+  std::optional<std::vector<Bounds>> largeParts_;
   SunFrustum sunFrustum_;
   std::vector<LightViews> spots_, points_;  ///< with shadow maps
   std::vector<LightViews> plainLamps_;  ///< without

@@ -105,7 +105,7 @@ TEST_F(AntialiasingGl, ThroughCentresThereIsNoShare) {
   }
 }
 
-// One frame, whose samples lie in columns of equal width [OpenGL 4.3, 14.3.1 leaves their places open; drivers agree].
+// One frame, whose samples lie in columns of equal width. OpenGL 4.3, 14.3.1, leaves their places open; Mesa's are so.
 TEST_F(AntialiasingGl, AMultisampledFrameShowsTheSharesOfAnEdge) {
   constexpr float kSky = 0.25f;
   for (const char* technique : {"direct", "irradiance-cache", "radiosity"})
