@@ -135,8 +135,7 @@ int runRender(RenderOptions options) {
     fmt::print("{}: {}x{}, {}, {}, mean radiance {:.6g} {:.6g} {:.6g}, {:.3f} s per frame on {}\n", options.output,
                image.width, image.height, options.picture.technique, options.picture.component, mean.x, mean.y, mean.z,
                seconds, context.capabilities().renderer);
-    if (gatherOf(renderer.technique())) fmt::print("{}", gatherLine(*gatherOf(renderer.technique())));
-    if (cacheOf(renderer.technique())) fmt::print("{}", cacheLine(*cacheOf(renderer.technique())));
+    if (renderer.technique()) fmt::print("{}", renderer.technique()->summary());
     if (options.repeat > 1)
       fmt::print("{}", stagesTable(renderer.timer().statistics(), context.capabilities().renderer));
   }

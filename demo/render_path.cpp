@@ -124,6 +124,17 @@ PathTracer::Settings tracerSettings(const PictureOptions& picture, const PathOpt
   return settings;
 }
 
+namespace {
+void resumeFrom(PathTracer& tracer, const std::string& checkpoint, const std::optional<SampleRange>& part) {
+  const std::vector<std::uint8_t> bytes = readFileBytes(checkpoint);
+  const std::uint32_t first = filmOf(bytes, checkpoint).first, wanted = part ? part->first : 0;
+  if (first != wanted)
+    throwBadInput("{}: its samples begin with number {}, not {}{}", checkpoint, first, wanted,
+                  part ? "" : " (a part of --samples; lucerna merge makes a whole)");
+  tracer.resume(bytes, checkpoint);
+}
+}  // namespace
+
 int renderPath(const CommonOptions& common, const PictureOptions& picture, const PathOptions& path,
                const SceneAt& sceneFile, const std::string& output) {
   PictureOptions rest = picture;
@@ -152,13 +163,15 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   if (settings.halves) denoiser.emplace(programs, tracer);
   // Without --checkpoint the film is stored next to the picture, and only if the work was stopped.
   const std::string checkpoint = path.checkpoint.empty() ? output + ".film" : path.checkpoint;
+  bool isOfAnother = false;  // OUT.film, of another picture that had the same name
   if (std::filesystem::exists(checkpoint)) {
-    const std::vector<std::uint8_t> bytes = readFileBytes(checkpoint);
-    tracer.resume(bytes, checkpoint);
-    const std::uint32_t first = filmOf(bytes, checkpoint).first;
-    if (first != (part ? part->first : 0))
-      throwBadInput("{}: its samples begin with number {}, not {}{}", checkpoint, first, part ? part->first : 0,
-                    part ? "" : " (a part of --samples; lucerna merge makes a whole)");
+    try {
+      resumeFrom(tracer, checkpoint, part);
+    } catch (const Error& error) {
+      if (!path.checkpoint.empty()) throw;
+      isOfAnother = true;
+      logWarning("{}; not resumed", error.what());
+    }
   } else if (part) {
     tracer.setFirstSample(part->first);
   }
@@ -220,7 +233,7 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
     writeImage(output, image);
   // After the picture, so that a full disk does not cost it.
   if (!path.checkpoint.empty()) save();
-  else std::filesystem::remove(checkpoint);
+  else if (!isOfAnother) std::filesystem::remove(checkpoint);
   if (!common.quiet)
     fmt::print(
         "{}: {}x{}, path, {}, {:.6g} samples per pixel, mean radiance {:.6g} {:.6g} {:.6g}, standard error of a pixel "

@@ -135,9 +135,7 @@ int exitCode();  ///< 0, or 128 + the signal's number: 130 after Ctrl-C, 143 aft
 nlohmann::ordered_json stagesJson(const std::vector<gl::StageStatistics>& stages);
 /// The savings of the reflective shadow map's gather, in pixels per frame.
 nlohmann::ordered_json gatherJson(const RsmGather& gather);
-std::string gatherLine(const RsmGather& gather);
 nlohmann::ordered_json cacheJson(const IrradianceCache& cache);
-std::string cacheLine(const IrradianceCache& cache);
 std::string stagesTable(const std::vector<gl::StageStatistics>& stages, const std::string& renderer);
 
 }  // namespace lucerna::demo

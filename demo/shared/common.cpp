@@ -261,28 +261,12 @@ nlohmann::ordered_json gatherJson(const RsmGather& gather) {
           {"frames", c.frames}};
 }
 
-std::string gatherLine(const RsmGather& gather) {
-  const nlohmann::ordered_json json = gatherJson(gather);
-  const auto count = [&](const char* key) { return json.at(key).get<std::uint64_t>(); };
-  if (count("frames") == 0) return "";
-  return fmt::format("gathered {} of {} pixels per frame ({} refused by interpolation), {:.1f} % saved\n",
-                     count("gathered"), count("pixels"), count("refused"), 100.0 * gather.counts().saving());
-}
-
 nlohmann::ordered_json cacheJson(const IrradianceCache& cache) {
   const IrradianceCache::Counts& c = cache.counts();
   return {{"records", c.records},
           {"waiting", c.waiting},
           {"without_room", c.left},
           {"paths_of_each", cache.settings().samples}};
-}
-
-std::string cacheLine(const IrradianceCache& cache) {
-  const IrradianceCache::Counts& c = cache.counts();
-  std::string line = fmt::format("{} records, {} paths each", c.records, cache.settings().samples);
-  if (c.waiting > 0) line += fmt::format("; {} incomplete", c.waiting);
-  if (c.left > 0) line += fmt::format("; {} without room (cache.cells)", c.left);
-  return line + "\n";
 }
 
 std::string stagesTable(const std::vector<gl::StageStatistics>& stages, const std::string& renderer) {

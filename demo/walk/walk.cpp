@@ -182,7 +182,7 @@ int record(const WalkOptions& options, const Host& host, const gl::Context& cont
     fmt::print("{} pictures {}x{} in {}, {:.2f} frames per second\n", done, renderer->size().x, renderer->size().y,
                part.isPart() ? part.folder()->string() : folder.string(), done / seconds);
     fmt::print("{}", stagesTable(renderer->timer().statistics(), context.capabilities().renderer));
-    if (gatherOf(renderer->technique())) fmt::print("{}", gatherLine(*gatherOf(renderer->technique())));
+    if (renderer->technique()) fmt::print("{}", renderer->technique()->summary());
     if (options.flicker)
       fmt::print(
           "flicker, largest change of a view when its volume is that of the view before: {:.3f} % of the mean, {:.2f} "

@@ -59,6 +59,8 @@ class FrameTechnique {
   virtual void addStagePictures(std::vector<StagePicture>&) const {}
   /// Names of its own stages that this scene and these settings do without.
   virtual void addLeftOut(std::vector<std::string>&) const {}
+  /// Lines for people after a picture, each with its end: what its frames did, and which light passes through walls.
+  virtual std::string summary() const { return {}; }
   /// Whether it shows media inside of bodies, if only as a preview.
   virtual bool previewsMedia() const { return false; }
   /// Estimated iterations of its largest submission so far (gl/chunks.hpp), and of shading one pixel with its lookup.

@@ -181,4 +181,12 @@ void IrradianceCacheFrame::addLeftOut(std::vector<std::string>& names) const {
   if (!hasMaps()) names.emplace_back("reflective shadow map");
 }
 
+std::string IrradianceCacheFrame::summary() const {
+  const IrradianceCache::Counts& c = cache_.counts();
+  std::string line = fmt::format("{} records, {} paths each", c.records, cache_.settings().samples);
+  if (c.waiting > 0) line += fmt::format("; {} incomplete", c.waiting);
+  if (c.left > 0) line += fmt::format("; {} without room (cache.cells)", c.left);
+  return line + "\n";
+}
+
 }  // namespace lucerna

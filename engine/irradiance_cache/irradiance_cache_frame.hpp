@@ -49,6 +49,7 @@ class IrradianceCacheFrame final : public FrameTechnique {
   void addShares(const InspectedPixel& pixel, PixelInspection& answer) override;
   void addStagePictures(std::vector<StagePicture>& pictures) const override;
   void addLeftOut(std::vector<std::string>& names) const override;
+  std::string summary() const override;
   bool previewsMedia() const override { return reflections_ && Bodies::isNeeded(parts_.features); }
   double largestIterations() const override {
     return std::max(cache_.mostIterations(), reflections_ ? reflections_->largestIterations() : 0.0);

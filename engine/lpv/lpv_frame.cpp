@@ -246,6 +246,14 @@ void LpvFrame::addLeftOut(std::vector<std::string>& names) const {
   if (settings().bounces == 1) names.emplace_back("light bounces");
 }
 
+std::string LpvFrame::summary() const {
+  if (!volume_ || cascades_.empty()) return "";
+  std::string sizes;
+  for (const shared::CascadeGrid& cascade : cascades_)
+    sizes += fmt::format("{}{:.3g}", sizes.empty() ? "" : ", ", cascade.cellSize);
+  return fmt::format("cells of {} scene units; reflected light passes through walls thinner than two cells\n", sizes);
+}
+
 std::size_t LpvFrame::gpuBytes() const {
   return (maps_ ? maps_->gpuBytes() : 0) + (cameraMap_ ? cameraMap_->gpuBytes() : 0) +
          (volume_ ? volume_->gpuBytes() : 0) + (lobes_ ? lobes_->gpuBytes() : 0) + (shafts_ ? shafts_->gpuBytes() : 0);

@@ -36,6 +36,7 @@ class LpvFrame final : public FrameTechnique {
   void addShares(const InspectedPixel& pixel, PixelInspection& answer) override;
   void addStagePictures(std::vector<StagePicture>& pictures) const override;
   void addLeftOut(std::vector<std::string>& names) const override;
+  std::string summary() const override;
   /// Estimated iterations of the largest submission (gl/chunks.hpp): filling from a map, or a step of propagation.
   static double largestIterations(const RenderSettings& settings, bool hasPoints);
   double largestIterations() const override;

@@ -27,6 +27,7 @@ class RsmFrame final : public FrameTechnique {
 
   void addShares(const InspectedPixel& pixel, PixelInspection& answer) override;
   void addStagePictures(std::vector<StagePicture>& pictures) const override;
+  std::string summary() const override;
   double largestIterations() const override { return gather_.largestIterations(); }
   std::size_t gpuBytes() const override { return maps_.gpuBytes() + visible_.gpuBytes() + gather_.gpuBytes(); }
 

@@ -72,6 +72,23 @@ TEST_F(Parts, ADenoisedPictureHasNone) {
                 "--technique path");
 }
 
+TEST_F(Parts, AnotherPicturesFilmBesideTheOutputIsLeftAlone) {
+  const std::string film = path("x.pfm.film"), output = "-o '" + path("x.pfm") + "'";
+  ASSERT_EQ(RUN_LUCERNA("render " + picture() + "--spp 4 --quiet " + output + " --checkpoint '" + film + "'").exitCode,
+            0);
+  const auto before = readFileBytes(film);
+  const std::string other = "render " + picture() + "--spp 4 --camera 0.278,0.3,-0.7,0.2,0.2,0.2,40 ";
+  const RunResult result = RUN_LUCERNA(other + output);
+  EXPECT_EQ(result.exitCode, 0) << result.err;
+  EXPECT_NE(result.err.find("x.pfm.film: a checkpoint of another scene, view or setting; not resumed"),
+            std::string::npos)
+      << result.err;
+  EXPECT_EQ(readFileBytes(film), before);
+  ASSERT_EQ(RUN_LUCERNA(other + "--quiet -o '" + path("alone.pfm") + "'").exitCode, 0);
+  EXPECT_EQ(readImage(path("x.pfm")).pixels, readImage(path("alone.pfm")).pixels);
+  expectRefused(other + output + " --checkpoint '" + film + "'", "another scene");
+}
+
 TEST_F(Parts, TogetherAreOneRun) {
   ASSERT_EQ(RUN_LUCERNA("render " + picture() + "--spp 48 --quiet -o '" + path("one.pfm") + "' --checkpoint '" +
                         path("one.film") + "' --json '" + path("one.json") + "'")
