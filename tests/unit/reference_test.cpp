@@ -172,6 +172,7 @@ TEST(ReferenceKey, FollowsContentAndNothingElse) {
   EXPECT_NE(clamped, repeated);
   EXPECT_NE(clamped, wrapped({TextureWrap::repeat, TextureWrap::edge}));
   EXPECT_NE(clamped, wrapped({TextureWrap::mirror, TextureWrap::repeat}));
+  EXPECT_NE(wrapped({TextureWrap::repeat, TextureWrap::edge}), wrapped({TextureWrap::repeat, TextureWrap::mirror}));
   EXPECT_NE(changed([](Scene& s) { s.environment.emplace(); }), first);
   Camera turned = camera;
   turned.verticalFov += 1e-6;
