@@ -347,6 +347,24 @@ void addSmallLamps(std::vector<StabilityCase>& cases) {
                        return Measurement{
                            1.0, floor(Component::all) / (floor(Component::direct) + floor(Component::indirect)), 0.03};
                      }});
+  // The spot is smaller than the cells of the bounce cache, too.
+  for (const int cells : {8, 11, 16})
+    cases.push_back({"irradiance-cache", "gather: a lamp of 4 cm 10 cm below a ceiling: reflected light over paths",
+                     fmt::format("{} cells in the room's 4 m", cells), [cells](const StabilityContext& c) {
+                       const Scene scene = spotOnCeiling(2.0, 0.1);
+                       RenderSettings settings;
+                       settings.technique = "irradiance-cache";
+                       settings.component = Component::indirect;
+                       settings.size = {32, 32};
+                       settings.fullFloatTarget = true;
+                       settings.of<IrradianceCacheSettings>().transport = CacheTransport::gather;
+                       settings.of<IrradianceCacheSettings>().bounceCells = cells;
+                       Renderer renderer(c.context, c.programs, scene, settings);
+                       renderer.renderToTheEnd(scene.cameras.front());
+                       const double all = limitsPath(c, scene, 1024).mean.x,
+                                    direct = limitsPath(c, scene, 1024, 1).mean.x;
+                       return Measurement{1.0, meanOf(renderer.readRadiance()).x / (all - direct), 0.2};
+                     }});
 }
 
 /// The foot of a box on a floor 100 wide, in the shadow of a lamp 1,000 away: no light.

@@ -141,7 +141,7 @@ const RadTriangle& middleOfFloor(std::span<const RadTriangle> triangles) {
 }
 
 /// A stone wall texture over everything, repeated four times along the scene's diagonal [RAD2008, figure 4.3].
-RadTextures stoneOver(std::span<const RadTriangle> triangles, const Bitmap& stone) {
+RadTextures stoneOver(std::span<const RadTriangle> triangles, const Texture& stone) {
   const double side = 0.25 * diagonalOf(triangles);
   RadTextures textures;
   textures.pictures = {&stone};
@@ -251,7 +251,8 @@ VptSheet drawRadPictures(gl::ProgramLibrary& programs, glm::ivec2 size, double s
   add("4.2 interpolated, over edges too, as published", twice, smooth);
   smooth.shading = RadShading::withinFaces;
   add("4.2 interpolated within faces", twice, smooth);
-  const Bitmap stone = readBitmap(dataFolder() / "assets/atrium/textures/limestone.png");
+  const std::filesystem::path stoneFile = dataFolder() / "assets/atrium/textures/limestone.png";
+  const Texture stone{stoneFile, readBitmap(stoneFile)};
   addFrom(overviewOf(lit), "4.3 model 1, a stone wall modulated by light", lit, constant, stoneOver(lit, stone));
   add("3.18 triangles turned away, by their corners", twice, with(RadMapping::logarithmic, false, true));
 

@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "forward/mask_levels.hpp"
+#include "forward/texture_wraps.hpp"
 #include "gl/draw.hpp"
 #include "scene/coat.hpp"
 #include "scene/motion.hpp"
@@ -51,13 +52,12 @@ bool outsideFrustum(const glm::mat4& clipFromWorld, const glm::vec3& centre, con
 GpuScene::GpuScene(const Scene& scene, const SceneFeatures& features, const gl::Capabilities& capabilities,
                    const GpuSceneSettings& settings)
     : scene_(&scene), features_(features), isSoftware_(capabilities.softwareRenderer) {
-  gl::Sampling sampling{settings.mipmaps ? gl::Filter::linearMipmaps : gl::Filter::linear, gl::Filter::linear,
-                        gl::Wrap::repeat};
+  gl::Sampling sampling{settings.mipmaps ? gl::Filter::linearMipmaps : gl::Filter::linear, gl::Filter::linear};
   // Each of n samples covers 1 / sqrt(n) of a pixel's width.
   sampling.bias = -0.5f * std::log2(static_cast<float>(settings.pixelSamples));
   // Without mipmaps a software renderer reads every texel below a pixel, thousands where the picture is small.
   const bool anisotropic = capabilities.anisotropicFilter && settings.mipmaps;
-  if (anisotropic && settings.anisotropy > 1.0f && features.diffuseTextures) isotropic_.emplace("isotropic", sampling);
+  const gl::Sampling isotropic = sampling;
   sampling.anisotropy = anisotropic ? std::min(settings.anisotropy, capabilities.maxAnisotropy) : 1.0f;
 
   struct Use {
@@ -75,15 +75,15 @@ GpuScene::GpuScene(const Scene& scene, const SceneFeatures& features, const gl::
     const std::string name = fmt::format("{} {}", use.name, texture.file.filename().string());
     const int levels = mipLevels(bitmap.width, bitmap.height);
     std::vector<std::uint8_t> texels = flippedRows(bitmap);
-    gl::Texture& target =
-        textures_.emplace_back(name, use.format, glm::ivec2(bitmap.width, bitmap.height), sampling, levels);
+    gl::Texture& target = textures_.emplace_back(name, use.format, glm::ivec2(bitmap.width, bitmap.height),
+                                                 withWraps(sampling, texture.wraps), levels);
     if (use.format == gl::Format::r8) {
       const std::size_t channel = bitmap.hasAlpha ? 3 : 0;
       for (std::size_t i = 0; i < texels.size() / 4; ++i) texels[i] = texels[4 * i + channel];
       texels.resize(texels.size() / 4);
       target.upload(gl::Texels::redByte, texels.data());
       int level = 0;
-      for (const std::vector<std::uint8_t>& smaller : maskLevels(texels, {bitmap.width, bitmap.height}))
+      for (const std::vector<std::uint8_t>& smaller : maskLevels(texels, {bitmap.width, bitmap.height}, texture.wraps))
         target.upload(gl::Texels::redByte, smaller.data(), ++level);
       return place->second;
     }
@@ -96,8 +96,12 @@ GpuScene::GpuScene(const Scene& scene, const SceneFeatures& features, const gl::
   for (const Material& material : scene.materials) {
     Surface surface{};
     setValues(surface, material);
-    if (features.diffuseTextures && material.diffuseTexture >= 0)
+    if (features.diffuseTextures && material.diffuseTexture >= 0) {
       surface.diffuseTexture = upload(material.diffuseTexture, kColour);
+      const TextureWraps wraps = scene.textures[static_cast<std::size_t>(material.diffuseTexture)].wraps;
+      if (sampling.anisotropy > 1.0f)
+        surface.isotropic = &isotropic_.try_emplace(wraps, "isotropic", withWraps(isotropic, wraps)).first->second;
+    }
     surface.masked = features.alphaMasks && material.alphaMasked;
     if (surface.masked)
       surface.maskTexture = upload(material.alphaTexture >= 0 ? material.alphaTexture : material.diffuseTexture, kMask);
@@ -196,7 +200,7 @@ gl::ShaderFlags GpuScene::materialFlags(bool masked) const {
           {"SPECULAR", features_.specular}};
 }
 
-void GpuScene::bindSurface(const gl::Program& program, const Surface& surface) const {
+void GpuScene::bindSurface(const gl::Program& program, const Surface& surface, bool isotropic) const {
   program.set("materialDiffuse", surface.diffuse);
   if (features_.specular) {
     program.set("materialSpecular", surface.specular);
@@ -207,6 +211,7 @@ void GpuScene::bindSurface(const gl::Program& program, const Surface& surface) c
     (texture >= 0 ? textures_[static_cast<std::size_t>(texture)] : *white_).bind(unit);
   };
   if (features_.diffuseTextures) bind(surface.diffuseTexture, UNIT_DIFFUSE);
+  if (isotropic && surface.isotropic) surface.isotropic->bind(UNIT_DIFFUSE);
   if (features_.emissionTextures) bind(surface.emissionTexture, UNIT_EMISSION_MAP);
   if (features_.normalMaps) {
     program.set("materialNormalScale", surface.normalScale);
@@ -226,8 +231,7 @@ void GpuScene::draw(const SurfacePrograms& programs, const View& view, const Sel
   const Selection& drawn = only ? *only : all_;
   drawn.vertexArray_.bind();
   if (coats_) coats_->bind(UNIT_COAT);
-  const bool isotropic = !view.anisotropic && isotropic_;
-  if (isotropic) isotropic_->bind(UNIT_DIFFUSE);
+  const bool isotropic = !view.anisotropic && !isotropic_.empty();
   for (const bool masked : {false, true}) {
     const std::vector<Draw>& meshes = masked ? drawn.masked_ : drawn.opaque_;
     if (meshes.empty()) continue;
@@ -246,7 +250,7 @@ void GpuScene::draw(const SurfacePrograms& programs, const View& view, const Sel
     program.use();
     int bound = -1;
     for (const auto& [distance, draw] : order) {
-      if (draw->surface != bound) bindSurface(program, surfaces_[static_cast<std::size_t>(draw->surface)]);
+      if (draw->surface != bound) bindSurface(program, surfaces_[static_cast<std::size_t>(draw->surface)], isotropic);
       bound = draw->surface;
       drawRange(*draw);
     }

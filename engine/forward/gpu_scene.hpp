@@ -7,6 +7,7 @@
 #include "scene/features.hpp"
 #include "scene/scene.hpp"
 
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -81,6 +82,7 @@ class GpuScene {
     glm::vec3 diffuse, specular, emission;
     float alpha;  ///< of the coat; 0: a mirror or glass, which only rays show
     int diffuseTexture = -1, maskTexture = -1, emissionTexture = -1, normalTexture = -1, metalTexture = -1;
+    const gl::Sampler* isotropic = nullptr;  ///< of isotropic_, if there is a diffuseTexture
     bool masked = false;
     float normalScale = 0.0f;  ///< 0: no normal map
     float metallic = 0.0f, roughness = -1.0f;  ///< factors of a MetalMap; these values: none
@@ -90,7 +92,7 @@ class GpuScene {
   void uploadIndices(const std::string& name, const std::vector<std::uint32_t>& indices, Selection& to) const;
   void setValues(Surface& surface, const Material& material) const;
   void drawRange(const Draw& draw) const;
-  void bindSurface(const gl::Program& program, const Surface& surface) const;
+  void bindSurface(const gl::Program& program, const Surface& surface, bool isotropic) const;
 
   const Scene* scene_;
   SceneFeatures features_;
@@ -98,7 +100,7 @@ class GpuScene {
   Selection all_;
   std::vector<gl::Texture> textures_;
   std::optional<gl::Texture> white_, coats_;
-  std::optional<gl::Sampler> isotropic_;  ///< if textures are filtered anisotropically
+  std::map<TextureWraps, gl::Sampler> isotropic_;  ///< of colours, if textures are filtered anisotropically
   std::vector<Surface> surfaces_;
   std::uint32_t opaqueIndexCount_ = 0;  ///< opaque meshes come first in the index buffer
   bool isSoftware_;  ///< the renderer

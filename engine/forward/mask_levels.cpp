@@ -16,9 +16,8 @@ struct Level {
   glm::ivec2 size;
   std::vector<float> values;
 
-  float at(int x, int y) const {  // repeated
-    return values[static_cast<std::size_t>((y + size.y) % size.y) * static_cast<std::size_t>(size.x) +
-                  static_cast<std::size_t>((x + size.x) % size.x)];
+  float at(int x, int y) const {
+    return values[static_cast<std::size_t>(y) * static_cast<std::size_t>(size.x) + static_cast<std::size_t>(x)];
   }
 };
 
@@ -47,46 +46,64 @@ Level halved(const Level& from) {
   return to;
 }
 
-/// The bilinear interpolation at points that are spread evenly; more of them where texels are few.
-std::vector<float> samplesOf(const Level& level) {
-  constexpr int kLeast = 256;  // along a side
-  const glm::ivec2 each = glm::max(glm::ivec2(kLeast) / level.size, glm::ivec2(1));
+/// Between the middles of two texels.
+struct Between {
+  int low, high;
+  float share;  ///< of `high`
+};
+
+/// Points along one direction, spread evenly over the picture; more of them where texels are few. Beyond the edge lie
+/// the texels of the other side or, clamped or mirrored, those of the edge again.
+std::vector<Between> pointsAlong(int size, TextureWrap wrap) {
+  constexpr int kLeast = 256;
+  const int each = std::max(kLeast / size, 1);
+  const bool repeats = wrap == TextureWrap::repeat;
+  const auto texel = [&](int i) { return repeats ? (i + size) % size : std::clamp(i, 0, size - 1); };
+  std::vector<Between> points;
+  points.reserve(static_cast<std::size_t>(size * each));
+  // From the middle of the first texel or, where the picture does not repeat, half a texel before.
+  for (int i = repeats ? 0 : each / 2; i < size * each + (repeats ? 0 : each / 2); ++i) {
+    const int low = i / each - (repeats ? 0 : 1);
+    points.push_back({texel(low), texel(low + 1), (static_cast<float>(i % each) + 0.5f) / static_cast<float>(each)});
+  }
+  return points;
+}
+
+/// The bilinear interpolation at points that are spread evenly.
+std::vector<float> samplesOf(const Level& level, TextureWraps wraps) {
+  const std::vector<Between> columns = pointsAlong(level.size.x, wraps.u), rows = pointsAlong(level.size.y, wraps.v);
   std::vector<float> samples;
-  samples.reserve(level.values.size() * static_cast<std::size_t>(each.x * each.y));
-  for (int y = 0; y < level.size.y; ++y)
-    for (int x = 0; x < level.size.x; ++x) {
-      const float a = level.at(x, y), b = level.at(x + 1, y), c = level.at(x, y + 1), d = level.at(x + 1, y + 1);
-      for (int j = 0; j < each.y; ++j)
-        for (int i = 0; i < each.x; ++i) {
-          const float u = (static_cast<float>(i) + 0.5f) / static_cast<float>(each.x),
-                      v = (static_cast<float>(j) + 0.5f) / static_cast<float>(each.y);
-          samples.push_back(glm::mix(glm::mix(a, b, u), glm::mix(c, d, u), v));
-        }
-    }
+  samples.reserve(columns.size() * rows.size());
+  for (const Between& row : rows)
+    for (const Between& column : columns)
+      samples.push_back(
+          glm::mix(glm::mix(level.at(column.low, row.low), level.at(column.high, row.low), column.share),
+                   glm::mix(level.at(column.low, row.high), level.at(column.high, row.high), column.share), row.share));
   return samples;
 }
 
 constexpr float kCut = 127.5f, kAbove = 128.0f;
 
-double coverageOf(const Level& level) {
-  const std::vector<float> samples = samplesOf(level);
+double coverageOf(const Level& level, TextureWraps wraps) {
+  const std::vector<float> samples = samplesOf(level, wraps);
   return static_cast<double>(std::ranges::count_if(samples, [](float v) { return v >= kCut; })) /
          static_cast<double>(samples.size());
 }
 
 }  // namespace
 
-double maskCoverage(const std::vector<std::uint8_t>& texels, glm::ivec2 size) {
-  return coverageOf(levelOf(texels, size));
+double maskCoverage(const std::vector<std::uint8_t>& texels, glm::ivec2 size, TextureWraps wraps) {
+  return coverageOf(levelOf(texels, size), wraps);
 }
 
-std::vector<std::vector<std::uint8_t>> maskLevels(const std::vector<std::uint8_t>& texels, glm::ivec2 size) {
+std::vector<std::vector<std::uint8_t>> maskLevels(const std::vector<std::uint8_t>& texels, glm::ivec2 size,
+                                                  TextureWraps wraps) {
   std::vector<std::vector<std::uint8_t>> levels;
   Level level = levelOf(texels, size);
-  const double coverage = coverageOf(level);
+  const double coverage = coverageOf(level, wraps);
   while (level.size != glm::ivec2(1)) {
     level = halved(level);
-    std::vector<float> samples = samplesOf(level);
+    std::vector<float> samples = samplesOf(level, wraps);
     // The value that as many samples reach as shall be covered is brought to the cut. Of equal samples all count or
     // none, whichever is nearer.
     const double covered = coverage * static_cast<double>(samples.size());

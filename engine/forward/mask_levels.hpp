@@ -2,6 +2,8 @@
 // in the picture itself, so that foliage and chains do not thin out at a distance [Castano2010].
 #pragma once
 
+#include "scene/scene.hpp"
+
 #include <glm/glm.hpp>
 
 #include <cstdint>
@@ -9,11 +11,12 @@
 
 namespace lucerna {
 
-/// The share of a repeated picture's area where its bilinear interpolation is at least 1/2.
-double maskCoverage(const std::vector<std::uint8_t>& texels, glm::ivec2 size);
+/// The share of a picture's area where its bilinear interpolation is at least 1/2.
+double maskCoverage(const std::vector<std::uint8_t>& texels, glm::ivec2 size, TextureWraps wraps);
 
 /// Levels 1 and up, each of half the size, down to one texel: the means of the texels that each covers, scaled to the
 /// coverage of the picture.
-std::vector<std::vector<std::uint8_t>> maskLevels(const std::vector<std::uint8_t>& texels, glm::ivec2 size);
+std::vector<std::vector<std::uint8_t>> maskLevels(const std::vector<std::uint8_t>& texels, glm::ivec2 size,
+                                                  TextureWraps wraps);
 
 }  // namespace lucerna

@@ -163,7 +163,7 @@ void applySampling(const Sampling& s, GLuint to, void(GLAPIENTRY* integer)(GLuin
   parameter(GL_TEXTURE_MIN_FILTER, raw(s.minFilter));
   parameter(GL_TEXTURE_MAG_FILTER, raw(s.magFilter));
   parameter(GL_TEXTURE_WRAP_S, raw(s.wrap));
-  parameter(GL_TEXTURE_WRAP_T, raw(s.wrap));
+  parameter(GL_TEXTURE_WRAP_T, raw(s.vertical.value_or(s.wrap)));
   parameter(GL_TEXTURE_WRAP_R, raw(s.wrap));
   numbers(to, GL_TEXTURE_BORDER_COLOR, &s.border.x);
   if (s.bias != 0.0f) number(to, GL_TEXTURE_LOD_BIAS, s.bias);

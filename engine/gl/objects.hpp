@@ -12,6 +12,7 @@
 #include <glm/glm.hpp>
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -111,6 +112,7 @@ struct Sampling {
   float anisotropy = 1.0f;
   float bias = 0.0f;  ///< added to the mip level; below 0: sharper
   bool depthCompare = false;  ///< sampler2DShadow, less or equal
+  std::optional<Wrap> vertical = {};  ///< of the second coordinate, if it is not `wrap`
 };
 
 /// While bound, replaces how the texture of a unit is read.

@@ -35,7 +35,12 @@ enum class TextureKind : GLenum {
 
 enum class Filter : GLenum { nearest = GL_NEAREST, linear = GL_LINEAR, linearMipmaps = GL_LINEAR_MIPMAP_LINEAR };
 /// `border` has zeros there unless Sampling says otherwise.
-enum class Wrap : GLenum { edge = GL_CLAMP_TO_EDGE, border = GL_CLAMP_TO_BORDER, repeat = GL_REPEAT };
+enum class Wrap : GLenum {
+  edge = GL_CLAMP_TO_EDGE,
+  border = GL_CLAMP_TO_BORDER,
+  repeat = GL_REPEAT,
+  mirror = GL_MIRRORED_REPEAT
+};
 
 /// How often a buffer changes, and who reads it.
 enum class Usage : GLenum {

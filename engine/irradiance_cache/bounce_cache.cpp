@@ -1,6 +1,7 @@
 #include "irradiance_cache/bounce_cache.hpp"
 
 #include "base/error.hpp"
+#include "scene/texture_mean.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -16,15 +17,9 @@ constexpr double kStep = 0.25;  // cells between tested points of a triangle
 bool isCutOut(const Scene& scene, const Material& material, const glm::dvec2& texCoord) {
   const int index = material.alphaTexture >= 0 ? material.alphaTexture : material.diffuseTexture;
   if (!material.alphaMasked || index < 0) return false;
-  const Bitmap& bitmap = scene.textures[static_cast<std::size_t>(index)].bitmap;
-  if (bitmap.width <= 0 || bitmap.height <= 0) return false;
-  const auto texel = [](double t, int size) {
-    return std::clamp(static_cast<int>((t - std::floor(t)) * size), 0, size - 1);
-  };
-  const int x = texel(texCoord.x, bitmap.width), y = bitmap.height - 1 - texel(texCoord.y, bitmap.height);
-  const std::size_t at =
-      4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(bitmap.width) + static_cast<std::size_t>(x));
-  return bitmap.rgba[at + (bitmap.hasAlpha ? 3 : 0)] < 128;
+  const Texture& texture = scene.textures[static_cast<std::size_t>(index)];
+  if (texture.bitmap.width <= 0 || texture.bitmap.height <= 0) return false;
+  return nearestTexel(texture, texCoord)[texture.bitmap.hasAlpha ? 3 : 0] < 128;
 }
 
 class Chooser {

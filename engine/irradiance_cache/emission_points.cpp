@@ -85,9 +85,8 @@ struct Point {
 void addPoints(const Scene& scene, const Emitter& emitter, std::uint32_t count, double expected,
                std::vector<Point>& points) {
   const Material& material = *emitter.material;
-  const Bitmap* picture = material.emissionTexture >= 0
-                              ? &scene.textures[static_cast<std::size_t>(material.emissionTexture)].bitmap
-                              : nullptr;
+  const Texture* picture =
+      material.emissionTexture >= 0 ? &scene.textures[static_cast<std::size_t>(material.emissionTexture)] : nullptr;
   const std::size_t first = points.size();
   glm::dvec3 sum(0.0);
   for (std::uint32_t i = 0; i < count; ++i) {

@@ -119,7 +119,7 @@ IrradianceCache::IrradianceCache(gl::ProgramLibrary& programs, const gl::Capabil
                              ? 0xffffu
                              : static_cast<std::uint32_t>(settings.bounces) + 1;
   path_.iterations = capabilities.softwareRenderer ? kSoftwareIterations : kMostIterations;
-  if (cached_) emissiveBodies_ = emissiveBodies(scene, scene_.origin());
+  if (cached_ || settings.transport == CacheTransport::gather) emissiveBodies_ = emissiveBodies(scene, scene_.origin());
 
   const gl::ShaderFlags common = lookupFlags(settings);
   const gl::ShaderFlags& rays = rays_ = rayFlags(lanes);
@@ -174,7 +174,8 @@ bool IrradianceCache::follow(const Scene& scene, const std::vector<Bounds>& move
   if (kept_) kept_->allAnew = kept_->allAnew || !lampsAlone;
   moved_.insert(moved_.end(), moved.begin(), moved.end());
   scene_.fill(path_);
-  if (cached_ && !(lampsAlone && moved.empty())) emissiveBodies_ = emissiveBodies(scene, scene_.origin());
+  if (!emissiveBodies_.empty() && !(lampsAlone && moved.empty()))
+    emissiveBodies_ = emissiveBodies(scene, scene_.origin());
   typicalIrradiance_ = typicalOf(scene);
   prefetchedFrom_.reset();
   followed_ = true;
@@ -201,8 +202,9 @@ void IrradianceCache::place(const Inputs& inputs) {
   constants.prefetch = inputs.fades ? static_cast<std::uint32_t>(settings_.prefetch) : 0;
   constants.markEvery = static_cast<std::uint32_t>(pixels / (kKeyPixels - constants.prefetch) + 1);
   // Smaller than the coarsest cell: others are small beside none.
-  const auto last =
-      std::ranges::lower_bound(emissiveBodies_, static_cast<float>(inputs.cascades.back().cellSize), {}, &glm::vec4::w);
+  const float coarsest =
+      std::max(static_cast<float>(inputs.cascades.back().cellSize), gather_ ? gather_->bounceCell() : 0.0f);
+  const auto last = std::ranges::lower_bound(emissiveBodies_, coarsest, {}, &glm::vec4::w);
   constants.smallLamps = static_cast<std::uint32_t>(
       std::min(static_cast<std::size_t>(last - emissiveBodies_.begin()), std::size_t{CACHE_MOST_SMALL_LAMPS}));
   std::copy_n(emissiveBodies_.begin(), constants.smallLamps, std::begin(constants.smallLamp));

@@ -207,8 +207,10 @@ void LightGather::gatherTree(const gl::Program& program, const ReflectiveShadowM
   const gl::ComputePass pass("cache gather", gl::Barrier::storage);
   program.use();
   program.set("last", last ? 1u : 0u);
-  if (&program == emission_)
+  if (&program == emission_) {
     program.set("raysAround", static_cast<float>(CACHE_LANES * (targets.groups ? kRaysOfLane : 1)));
+    program.set("cell", targets.groups ? 0.0f : bounceCell_);
+  }
   if (visibility_ == GatherVisibility::rays) {
     paths_->bind();
     program.set("rayEnd", rayEnd_);

@@ -51,6 +51,7 @@ class LightGather {
   void forget() { stale_ = true; }
   /// Of a lane that gathers from a light tree, at most: nodes and texels that it visits, and its ray.
   static double iterationsOfLane(int depth, int top, int layers);
+  float bounceCell() const { return bounceCell_; }  ///< scene units; 0 without points of bounces
   double mostIterations() const;  ///< of a submission, at most
   std::size_t gpuBytes() const;
 
@@ -86,7 +87,7 @@ class LightGather {
   std::size_t points_ = 0;
   int passes_ = 0;
   glm::vec3 bounceMinimum_{0.0f};  ///< in the coordinates of `paths_`
-  float bounceCell_ = 1.0f;
+  float bounceCell_ = 0.0f;
   glm::ivec3 bounceCells_{1};
   const gl::Program *trace_ = nullptr, *bounce_ = nullptr;
   gl::Buffer pointData_, list_, links_;

@@ -67,11 +67,15 @@ std::optional<std::vector<Emitter>> cutByTexels(const Scene& scene, const Emitte
                                                 std::size_t most) {
   const Material& material = *whole.material;
   if (material.emissionTexture < 0) return std::vector{whole};
-  const Bitmap& bitmap = scene.textures[static_cast<std::size_t>(material.emissionTexture)].bitmap;
+  const Texture& texture = scene.textures[static_cast<std::size_t>(material.emissionTexture)];
   std::vector<Polygon> polygons{{whole.corners.begin(), whole.corners.end()}};
   for (const int axis : {0, 1}) {
-    const double size = step / (axis == 0 ? bitmap.width : bitmap.height);
-    const auto coordinate = [&](std::size_t k) { return whole.corners[k].texCoord[axis]; };
+    const double size = step / (axis == 0 ? texture.bitmap.width : texture.bitmap.height);
+    const bool continues = (axis == 0 ? texture.wraps.u : texture.wraps.v) == TextureWrap::edge;
+    const auto coordinate = [&](std::size_t k) {  // beyond an edge that continues there are no texels to cut at
+      const double at = whole.corners[k].texCoord[axis];
+      return continues ? std::clamp(at, 0.0, 1.0) : at;
+    };
     const auto [least, last] = std::minmax({coordinate(0), coordinate(1), coordinate(2)});
     const double first = std::floor(least / size) + 1.0, count = std::ceil(last / size) - first;
     if (count > static_cast<double>(most)) return std::nullopt;
@@ -83,7 +87,8 @@ std::optional<std::vector<Emitter>> cutByTexels(const Scene& scene, const Emitte
     for (std::size_t k = 2; k < polygon.size(); ++k) {
       const std::array corners{polygon[0], polygon[k - 1], polygon[k]};
       const auto uv = [&](std::size_t i) { return glm::vec2(corners[i].texCoord); };
-      const glm::dvec3 exitance = kPi * glm::dvec3(material.emissionScale) * meanTexture(bitmap, {uv(0), uv(1), uv(2)});
+      const glm::dvec3 exitance =
+          kPi * glm::dvec3(material.emissionScale) * meanTexture(texture, {uv(0), uv(1), uv(2)});
       if (exitance != glm::dvec3(0.0)) pieces.push_back({corners, exitance, &material});
     }
   return pieces;

@@ -76,9 +76,8 @@ void complete(Patch& patch, const RadiosityMesh& mesh, const Scene& scene) {
   patch.reflectance = meanAlbedo(scene, material, patch.texCoord);
   patch.emission = std::numbers::pi * glm::dvec3(material.emission);
   if (material.emissionTexture >= 0)
-    patch.emission =
-        std::numbers::pi * glm::dvec3(material.emissionScale) *
-        meanTexture(scene.textures[static_cast<std::size_t>(material.emissionTexture)].bitmap, patch.texCoord);
+    patch.emission = std::numbers::pi * glm::dvec3(material.emissionScale) *
+                     meanTexture(scene.textures[static_cast<std::size_t>(material.emissionTexture)], patch.texCoord);
 }
 
 struct EdgeHash {

@@ -116,8 +116,8 @@ LightTable lightTable(const Scene& scene, const glm::dvec3& origin, bool sunApar
         // Weighted by the mean over the triangle plus a share of the picture's own mean: the lookups here may have
         // missed a bright spot.
         const auto uv = [&](std::uint32_t k) { return scene.vertices[scene.indices[i + k]].texCoord; };
-        const Bitmap& bitmap = scene.textures[static_cast<std::size_t>(material.emissionTexture)].bitmap;
-        brightness = 0.9 * worth(glm::dvec3(material.emissionScale) * meanTexture(bitmap, {uv(0), uv(1), uv(2)})) +
+        const Texture& texture = scene.textures[static_cast<std::size_t>(material.emissionTexture)];
+        brightness = 0.9 * worth(glm::dvec3(material.emissionScale) * meanTexture(texture, {uv(0), uv(1), uv(2)})) +
                      0.1 * brightness;
       }
       shared::PathLight light{};

@@ -166,6 +166,15 @@ void PathScene::uploadEnvironment(const Environment& environment) {
 
 namespace {
 
+int pathWrapOf(TextureWrap wrap) {
+  switch (wrap) {
+    case TextureWrap::edge: return PATH_WRAP_EDGE;
+    case TextureWrap::mirror: return PATH_WRAP_MIRROR;
+    case TextureWrap::repeat: break;
+  }
+  return PATH_WRAP_REPEAT;
+}
+
 /// The part of a picture that an atlas stores. A picture may occur twice: as colour, and as a mask in the alpha
 /// channel.
 struct AtlasEntry {
@@ -223,15 +232,12 @@ std::optional<gl::Texture> makeAtlas(const Scene& scene, const gl::Capabilities&
   std::optional<gl::Texture> atlas;
   atlas.emplace(name, format, layout.size, gl::Sampling{}, 1, gl::TextureKind::array);
   atlas->upload(gl::Texels::rgbaByte, texels.data());
-  for (const auto& [entry, use] : content.uses)
-    *use = {layout.places[entry].layer,
-            layout.places[entry].corner.x,
-            layout.places[entry].corner.y,
-            sizes[entry].x,
-            sizes[entry].y,
-            0,
-            0,
-            0};
+  for (const auto& [entry, use] : content.uses) {
+    const AtlasPlace& place = layout.places[entry];
+    const TextureWraps& wraps = scene.textures[static_cast<std::size_t>(content.entries[entry].texture)].wraps;
+    *use = {place.layer,    place.corner.x,      place.corner.y,      sizes[entry].x,
+            sizes[entry].y, pathWrapOf(wraps.u), pathWrapOf(wraps.v), 0};
+  }
   return atlas;
 }
 
@@ -316,6 +322,7 @@ gl::ShaderFlags PathScene::flags() const {
            features_.diffuseTextures || features_.emissionTextures || features_.normalMaps || features_.metalMaps},
           {"NORMAL_MAPS", features_.normalMaps},
           {"METAL_MAPS", features_.metalMaps},
+          {"TEXTURE_WRAPS", features_.textureWraps},
           {"COATS", hasCoats_},
           {"ALPHA_MASKS", features_.alphaMasks},
           {"SMOOTH_NORMALS", features_.smoothNormals},

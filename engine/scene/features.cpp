@@ -14,6 +14,16 @@ bool anyPositive(const Image& picture) {
   return std::any_of(picture.pixels.begin(), picture.pixels.end(), [](const glm::vec3& v) { return anyPositive(v); });
 }
 
+/// Whether a texture of the material does not repeat.
+bool hasWraps(const Scene& scene, const Material& material) {
+  const int textures[] = {material.diffuseTexture, material.alphaTexture, material.emissionTexture,
+                          material.normalTexture, material.metalMap ? material.metalMap->texture : -1};
+  return std::any_of(std::begin(textures), std::end(textures), [&](int texture) {
+    return texture >= 0 && static_cast<std::size_t>(texture) < scene.textures.size() &&
+           !scene.textures[static_cast<std::size_t>(texture)].wraps.repeat();
+  });
+}
+
 /// Whether a corner's normal differs from the triangle's by more than rounding. Its orientation counts too, since
 /// surfaces are flipped by the triangle's side.
 bool isSmooth(const Scene& scene, const Mesh& mesh) {
@@ -60,6 +70,7 @@ std::vector<std::pair<std::string, bool>> SceneFeatures::named() const {
       {"emissionTextures", emissionTextures},
       {"normalMaps", normalMaps},
       {"metalMaps", metalMaps},
+      {"textureWraps", textureWraps},
       {"smoothNormals", smoothNormals},
       {"mirrors", mirrors},
       {"conductors", conductors},
@@ -96,6 +107,7 @@ SceneFeatures analyse(const Scene& scene) {
     features.emissionTextures |= anyPositive(material.emission) && material.emissionTexture >= 0;
     features.normalMaps |= material.normalTexture >= 0 && material.normalScale != 0.0f;
     features.metalMaps |= material.metalMap.has_value();
+    features.textureWraps = features.textureWraps || hasWraps(scene, material);
     features.smoothNormals = features.smoothNormals || isSmooth(scene, mesh);
     features.mirrors |= material.bsdf == Bsdf::mirror;
     features.conductors |= material.bsdf == Bsdf::conductor;

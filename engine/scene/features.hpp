@@ -28,6 +28,7 @@ struct SceneFeatures {
   bool emissionTextures = false;  ///< any drawn mesh emits by a texture
   bool normalMaps = false;  ///< any drawn mesh has a normal map
   bool metalMaps = false;  ///< any drawn mesh is metallic or rough by a texture
+  bool textureWraps = false;  ///< any drawn mesh has a texture that does not repeat (TextureWrap)
   // Only for the path tracer, and for what the irradiance cache reflects:
   bool smoothNormals = false;  ///< a vertex normal that differs from its triangle's
   bool mirrors = false;

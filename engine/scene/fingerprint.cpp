@@ -48,6 +48,7 @@ void addSurfaces(Hash& h, const Scene& scene) {
   for (const Texture& t : scene.textures) {
     h.add(t.bitmap.width), h.add(t.bitmap.height), h.add(t.bitmap.hasAlpha);
     h.bytes(t.bitmap.rgba.data(), t.bitmap.rgba.size());
+    if (!t.wraps.repeat()) h.add(static_cast<int>(t.wraps.u)), h.add(static_cast<int>(t.wraps.v));
   }
 }
 

@@ -36,13 +36,21 @@ TextureTransform transformOf(const Value& texture) {
   return result;
 }
 
-/// Whether a texture's sampler does anything but repeat.
-bool clamps(const GltfFile& file, const Value& texture) {
-  constexpr int kRepeat = 10497;
-  if (!texture.has("sampler")) return false;
+/// [GLTF2, 5.26]; its values are OpenGL's.
+TextureWrap wrapOf(const Value& sampler, const char* key) {
+  if (!sampler.has(key)) return TextureWrap::repeat;
+  const Value wrap = sampler.at(key);
+  if (wrap.json == 10497) return TextureWrap::repeat;
+  if (wrap.json == 33071) return TextureWrap::edge;
+  if (wrap.json == 33648) return TextureWrap::mirror;
+  wrap.fail("10497 (REPEAT), 33071 (CLAMP_TO_EDGE) or 33648 (MIRRORED_REPEAT)");
+}
+
+TextureWraps wrapsOf(const GltfFile& file, const Value& texture) {
+  if (!texture.has("sampler")) return {};
   const Value sampler = file.at("samplers", file.indexOf(texture.at("sampler"), "samplers"));
   if (!sampler.json.is_object()) sampler.fail("an object {...}");
-  return sampler.json.value("wrapS", Json(kRepeat)) != kRepeat || sampler.json.value("wrapT", Json(kRepeat)) != kRepeat;
+  return {wrapOf(sampler, "wrapS"), wrapOf(sampler, "wrapT")};
 }
 
 /// Pictures without a file of their own. A URI never begins with a space.
@@ -89,18 +97,17 @@ class MaterialReader {
     return static_cast<float>(std::clamp(object.at(key).number(), 0.0, 1.0));
   }
 
-  /// The name of a picture; `what`: it, in messages. One set of texture coordinates serves all pictures.
-  std::string picture(const Value& object, const char* key, const char* what) {
+  /// `what`: the picture, in messages. One set of texture coordinates serves all pictures.
+  PictureUse picture(const Value& object, const char* key, const char* what) {
     if (!object.has(key)) return {};
     const Value texture = object.at(key);
     if (!texture.json.is_object() || !texture.has("index")) texture.fail("an object with an index");
     const std::size_t index = file_.indexOf(texture.at("index"), "textures");
     const TextureTransform transform = transformOf(texture);
-    result_.clamped = result_.clamped || clamps(file_, file_.at("textures", index));
     if (!result_.transform) result_.transform = transform;
     else if (!(transform == *result_.transform))
       result_.lacks(fmt::format("the {} texture lies as the first one does", what));
-    return pictureOf(file_, index);
+    return {pictureOf(file_, index), wrapsOf(file_, file_.at("textures", index))};
   }
 
   void readBase(const Value& object, const char* factor, const char* texture) {

@@ -21,14 +21,14 @@ struct TextureTransform {
 struct GltfMaterial {
   std::string name;
   glm::vec3 base{1.0f};  ///< baseColorFactor
-  std::string basePicture;  ///< names of pictures are those of a TextureLoader; empty: none
+  PictureUse basePicture;
   float metallic = 1.0f, roughness = 1.0f;
-  std::string metalPicture;
+  PictureUse metalPicture;
   glm::vec3 emissive{0.0f};
   float emissiveStrength = 1.0f;  ///< KHR_materials_emissive_strength
-  std::string emissivePicture;
+  PictureUse emissivePicture;
   float normalScale = 1.0f;
-  std::string normalPicture;
+  PictureUse normalPicture;
   enum class Alpha { opaque, mask, blend };
   Alpha alpha = Alpha::opaque;
   double alphaCutoff = 0.5,
@@ -39,7 +39,6 @@ struct GltfMaterial {
   double thickness = 0.0;  ///< KHR_materials_volume; 0: a thin wall
   glm::vec3 absorption{0.0f};  ///< of the interior, 1 / scene unit: -ln(attenuationColor) / attenuationDistance
   std::optional<TextureTransform> transform;  ///< of the first picture, in the order above; empty: it has none
-  bool clamped = false;  ///< a texture should be clamped or mirrored beyond its edge; it repeats here
   std::string notDone;  ///< unsupported properties, for one warning; empty: none
 
   void lacks(std::string_view what);

@@ -197,14 +197,6 @@ std::pair<glm::vec3, bool> vertexColour(const GltfVertices& vertices, const Gltf
   return {area > 0.0 ? glm::clamp(glm::vec3(sum / area), 0.0f, 1.0f) : glm::vec3(1.0f), same};
 }
 
-/// Whether any texture coordinate lies outside the picture by more than rounding.
-bool leavesItsPicture(const MeshData& mesh) {
-  constexpr float kRounding = 1e-4f;
-  return std::any_of(mesh.texCoords.begin(), mesh.texCoords.end(), [&](const glm::vec2& uv) {
-    return !(std::min(uv.x, uv.y) >= -kRounding && std::max(uv.x, uv.y) <= 1.0f + kRounding);
-  });
-}
-
 /// Null if nothing of it is drawn.
 std::shared_ptr<Shape> GltfReader::shapeOf(std::size_t node, const Value& primitive, const std::string& name) {
   std::optional<std::size_t> material;
@@ -227,8 +219,6 @@ std::shared_ptr<Shape> GltfReader::shapeOf(std::size_t node, const Value& primit
   if (haveAlpha && gltf.alpha != GltfMaterial::Alpha::opaque) gltf.lacks("vertices' alpha is not read");
   if (gltf.transform && vertices.texCoords.empty())
     gltf.lacks(fmt::format("a mesh without its texture coordinates (TEXCOORD_{})", shape->transform.texCoord));
-  if (gltf.clamped && leavesItsPicture(shape->data))
-    gltf.lacks("its texture repeats where it should be clamped or mirrored");
   shape->material = materialFor(material, tint);
   return scene_.materials[static_cast<std::size_t>(shape->material)].opacity > 0.0f ? shape : nullptr;
 }

@@ -22,7 +22,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-
 glm::vec3 toGlm(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 glm::vec3 toGlm(const aiColor3D& c) { return {c.r, c.g, c.b}; }
 
@@ -214,10 +213,17 @@ std::optional<glm::vec3> colourOf(const aiMaterial& material, const char* key, u
   return value;
 }
 
-std::string pictureOf(const aiMaterial& material, std::initializer_list<aiTextureType> types) {
+PictureUse pictureOf(const aiMaterial& material, std::initializer_list<aiTextureType> types) {
+  const auto wrapOf = [](aiTextureMapMode mode) {
+    if (mode == aiTextureMapMode_Mirror) return TextureWrap::mirror;
+    return mode == aiTextureMapMode_Clamp || mode == aiTextureMapMode_Decal ? TextureWrap::edge : TextureWrap::repeat;
+  };
   for (const aiTextureType type : types) {
     aiString name;
-    if (material.GetTexture(type, 0, &name) == aiReturn_SUCCESS && name.length > 0) return name.C_Str();
+    aiTextureMapMode modes[3] = {aiTextureMapMode_Wrap, aiTextureMapMode_Wrap, aiTextureMapMode_Wrap};
+    if (material.GetTexture(type, 0, &name, nullptr, nullptr, nullptr, nullptr, modes) == aiReturn_SUCCESS &&
+        name.length > 0)
+      return {name.C_Str(), {wrapOf(modes[0]), wrapOf(modes[1])}};
   }
   return {};
 }

@@ -46,7 +46,7 @@ std::optional<float> numberOf(const aiMaterial& material, const char* key, unsig
 std::optional<glm::vec3> colourOf(const aiMaterial& material, const char* key, unsigned type, unsigned index,
                                   float highest = 1.0f);
 /// The picture of the first of these types that the material has; empty: it has none.
-std::string pictureOf(const aiMaterial& material, std::initializer_list<aiTextureType> types);
+PictureUse pictureOf(const aiMaterial& material, std::initializer_list<aiTextureType> types);
 
 // Parts of a material.
 /// Diffuse, specular and emitted colour, and exponent.

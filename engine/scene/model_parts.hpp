@@ -35,7 +35,15 @@ void setMetallicRoughness(Material& material, const glm::vec3& base, float metal
 /// Mean over all texels, encoded values in 0..1.
 glm::vec3 meanValue(const Bitmap& bitmap);
 
-/// Reads every picture once; a picture that cannot be read is one warning. An empty name: no picture.
+/// A picture as a model uses it.
+struct PictureUse {
+  std::string name;  ///< of a TextureLoader; empty: none
+  TextureWraps wraps = {};
+  bool empty() const { return name.empty(); }
+  auto operator<=>(const PictureUse&) const = default;
+};
+
+/// Reads every picture once for each of its wraps; a picture that cannot be read is one warning.
 class TextureLoader {
  public:
   /// The picture of that name inside the model file, if there is one; `label` names it in messages.
@@ -44,11 +52,11 @@ class TextureLoader {
   TextureLoader(Scene& scene, Embedded embedded) : scene_(scene), embedded_(std::move(embedded)) {}
 
   /// Index of an albedo map; the shared checker if it cannot be read; -1 if the material has none.
-  int albedo(const std::string& name);
+  int albedo(const PictureUse& picture);
   /// Index of a picture that only refines the material: -1 also if it cannot be read.
-  int optional(const std::string& name);
+  int optional(const PictureUse& picture);
   /// The same of a picture that is kept only if `isWanted`.
-  int optionalIf(const std::string& name, bool (*isWanted)(const Bitmap&));
+  int optionalIf(const PictureUse& picture, bool (*isWanted)(const Bitmap&));
   /// The mean of a picture that is not kept, encoded values in 0..1; 1 without a picture.
   glm::vec3 mean(const std::string& name);
   /// An albedo map whose alpha is shifted so that `threshold` becomes 0.5, the cut-off of masks. The cut stays at the
@@ -58,13 +66,13 @@ class TextureLoader {
   const Bitmap& operator[](int texture) const { return scene_.textures[static_cast<std::size_t>(texture)].bitmap; }
 
  private:
-  int load(const std::string& name);
-  std::optional<Texture> read(const std::string& name);
+  int load(const PictureUse& picture);
+  std::optional<Texture> read(const PictureUse& picture);
   int checker();
 
   Scene& scene_;
   Embedded embedded_;
-  std::map<std::string, int> indices_;
+  std::map<PictureUse, int> indices_;
   std::map<std::pair<int, double>, int> moved_;
   std::vector<std::string> unreadable_;
   int checker_ = -1;

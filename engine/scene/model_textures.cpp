@@ -56,27 +56,27 @@ glm::vec3 meanValue(const Bitmap& bitmap) {
   return glm::vec3(sum / (255.0 * static_cast<double>(bitmap.rgba.size() / 4)));
 }
 
-int TextureLoader::albedo(const std::string& name) {
-  if (name.empty()) return -1;
-  const int index = load(name);
+int TextureLoader::albedo(const PictureUse& picture) {
+  if (picture.empty()) return -1;
+  const int index = load(picture);
   return index >= 0 ? index : checker();
 }
 
-int TextureLoader::optional(const std::string& name) { return name.empty() ? -1 : load(name); }
+int TextureLoader::optional(const PictureUse& picture) { return picture.empty() ? -1 : load(picture); }
 
-int TextureLoader::optionalIf(const std::string& name, bool (*isWanted)(const Bitmap&)) {
-  if (const auto known = indices_.find(name); known != indices_.end())
+int TextureLoader::optionalIf(const PictureUse& picture, bool (*isWanted)(const Bitmap&)) {
+  if (const auto known = indices_.find(picture); known != indices_.end())
     return known->second >= 0 && isWanted((*this)[known->second]) ? known->second : -1;
-  std::optional<Texture> texture = read(name);
+  std::optional<Texture> texture = read(picture);
   if (!texture || !isWanted(texture->bitmap)) return -1;
-  const int index = indices_[name] = static_cast<int>(scene_.textures.size());
+  const int index = indices_[picture] = static_cast<int>(scene_.textures.size());
   scene_.textures.push_back(std::move(*texture));
   return index;
 }
 
 glm::vec3 TextureLoader::mean(const std::string& name) {
   if (name.empty()) return glm::vec3(1.0f);
-  const std::optional<Texture> texture = read(name);
+  const std::optional<Texture> texture = read({name});
   return texture ? meanValue(texture->bitmap) : glm::vec3(1.0f);
 }
 
@@ -91,24 +91,26 @@ int TextureLoader::withThreshold(int texture, double threshold) {
   return known->second;
 }
 
-int TextureLoader::load(const std::string& name) {
-  const auto known = indices_.find(name);
+int TextureLoader::load(const PictureUse& picture) {
+  const auto known = indices_.find(picture);
   if (known != indices_.end()) return known->second;
   int index = -1;
-  if (std::optional<Texture> texture = read(name)) {
+  if (std::optional<Texture> texture = read(picture)) {
     index = static_cast<int>(scene_.textures.size());
     scene_.textures.push_back(std::move(*texture));
   }
-  indices_[name] = index;
+  indices_[picture] = index;
   return index;
 }
 
-std::optional<Texture> TextureLoader::read(const std::string& name) {
+std::optional<Texture> TextureLoader::read(const PictureUse& picture) {
+  const std::string& name = picture.name;
   try {
     const fs::path label = scene_.file.string() + ":" + name;
-    if (std::optional<Bitmap> embedded = embedded_(name, label)) return Texture{label, std::move(*embedded)};
+    if (std::optional<Bitmap> embedded = embedded_(name, label))
+      return Texture{label, std::move(*embedded), picture.wraps};
     const fs::path file = fileBeside(scene_.file, name);
-    return Texture{file, readBitmap(file)};
+    return Texture{file, readBitmap(file), picture.wraps};
   } catch (const Error& e) {
     if (std::find(unreadable_.begin(), unreadable_.end(), name) == unreadable_.end()) {
       unreadable_.push_back(name);

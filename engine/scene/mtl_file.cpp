@@ -258,10 +258,11 @@ Material materialOf(const MtlMaterial& mtl, TextureLoader& textures, std::set<st
   const std::string where = fmt::format("material '{}'", m.name);
 
   // Colour, opacity.
-  m.diffuseTexture = textures.albedo(mtl.diffuseMap.file);
+  m.diffuseTexture = textures.albedo(mtl.diffuseMap.use());
   const bool hasAlpha = m.diffuseTexture >= 0 && textures[m.diffuseTexture].hasAlpha;
   const bool ownMask = mtl.opacityMap.file == mtl.diffuseMap.file;
-  if (!ownMask) m.alphaTexture = textures.optional(mtl.opacityMap.file);
+  if (!ownMask || (hasAlpha && mtl.opacityMap.use() != mtl.diffuseMap.use()))
+    m.alphaTexture = textures.optional(mtl.opacityMap.use());
   const bool alphaIsOpacity = hasAlpha && (m.opacity < 1.0f || (ownMask && !mtl.opacityMap.file.empty()) ||
                                            (mtl.opacityMap.file.empty() && cutsOut(textures[m.diffuseTexture])));
   m.alphaMasked = m.alphaTexture >= 0 || alphaIsOpacity;
@@ -274,16 +275,16 @@ Material materialOf(const MtlMaterial& mtl, TextureLoader& textures, std::set<st
   // Emission; code that treats a surface as a whole uses the picture's mean.
   if (m.emission != glm::vec3(0.0f)) {
     m.emissionScale = m.emission;
-    m.emissionTexture = textures.optional(mtl.emissionMap.file);
+    m.emissionTexture = textures.optional(mtl.emissionMap.use());
     if (m.emissionTexture >= 0) m.emission *= glm::vec3(meanColour(textures[m.emissionTexture]));
     else if (!mtl.emission) m.emission = m.emissionScale = glm::vec3(0.0f);
   }
 
   // Normals.
-  m.normalTexture = textures.optional(mtl.normalMap.file);
+  m.normalTexture = textures.optional(mtl.normalMap.use());
   m.normalScale = mtl.normalMap.multiplier;
   if (m.normalTexture < 0 && !mtl.bumpMap.file.empty()) {
-    m.normalTexture = textures.optionalIf(mtl.bumpMap.file, holdsNormals);
+    m.normalTexture = textures.optionalIf(mtl.bumpMap.use(), holdsNormals);
     m.normalScale = mtl.bumpMap.multiplier;
     if (m.normalTexture < 0) ignored.insert("bump (maps of heights)");
   }

@@ -9,6 +9,8 @@
 // - Kd is 1 where only map_Kd is given, Ke is 1 where only map_Ke is. Missing g and b are r.
 // - A material with d 0 would be invisible; exporters that mix up `d` and `Tr` write it for solid things, so it counts
 // as 1.
+// - "-clamp on" restricts coordinates, after -s and -o, to 0..1 "rather than repeating copies": outside, the picture's
+//   edge is seen, as in other readers of the format. The text says nothing of what else could lie there.
 // - illum 5 is a mirror of Ks; illum 4, 6, 7 and 9 with an Ni are a smooth dielectric of that index (Ni 1: a boundary
 //   without effect).
 // What is not read is one warning a library.
@@ -30,6 +32,10 @@ struct MtlPicture {
   glm::dvec2 scale{1.0}, offset{0.0};  ///< looked up at scale * (u, v) + offset
   bool clamped = false;
   float multiplier = 1.0f;  ///< -bm
+  PictureUse use() const {
+    const TextureWrap wrap = clamped ? TextureWrap::edge : TextureWrap::repeat;
+    return {file, {wrap, wrap}};
+  }
 };
 
 struct MtlMaterial {

@@ -287,9 +287,6 @@ class ObjReader {
         else scene_.materials.push_back(defaultMaterial(group.material, coloured));
       }
       fill(mesh, group, mtl ? leadingPicture(*mtl) : MtlPicture{}, coloured);
-      if (mtl && leadingPicture(*mtl).clamped && leavesPicture(mesh))
-        ignoredOf_[found->second.second].insert(
-            fmt::format("material '{}': -clamp on, its picture repeats", mtl->name));
       group = {};  // memory
     }
     return meshes;
@@ -331,13 +328,6 @@ class ObjReader {
     if (index >= 0 && static_cast<std::size_t>(index) < values.size()) return &values[static_cast<std::size_t>(index)];
     missing_[part] = missing_[part] || index >= 0;
     return nullptr;
-  }
-
-  static bool leavesPicture(const PolygonMesh& mesh) {
-    constexpr float kRounding = 1e-4f;
-    return std::any_of(mesh.texCoords.begin(), mesh.texCoords.end(), [&](const glm::vec2& uv) {
-      return !(std::min(uv.x, uv.y) >= -kRounding && std::max(uv.x, uv.y) <= 1.0f + kRounding);
-    });
   }
 
   void decodeColours() {

@@ -323,7 +323,7 @@ class PlyReader {
     const auto material = [&](const std::string& picture) {
       Material m;
       m.name = picture.empty() ? "DefaultMaterial" : picture;
-      m.diffuseTexture = mesh_.texCoords.empty() ? -1 : textures.albedo(picture);
+      m.diffuseTexture = mesh_.texCoords.empty() ? -1 : textures.albedo({picture});
       m.diffuse = glm::vec3(m.diffuseTexture >= 0 || !mesh_.colours.empty() ? 1.0f : kDefaultAlbedo);
       scene_.materials.push_back(std::move(m));
       return static_cast<int>(scene_.materials.size()) - 1;

@@ -10,6 +10,7 @@
 #include <glm/glm.hpp>
 
 #include <cmath>
+#include <compare>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -43,10 +44,24 @@ struct Vertex {
   glm::vec3 normal{0.0f, 1.0f, 0.0f};
 };
 
-/// A picture used by materials; several materials may share one.
+/// What a texture shows where a coordinate lies outside of its picture's 0..1.
+enum class TextureWrap {
+  repeat,  ///< the picture again
+  edge,  ///< the texels of its edge; what is read at the edge is theirs alone
+  mirror,  ///< the picture again, every other time mirrored
+};
+
+struct TextureWraps {
+  TextureWrap u = TextureWrap::repeat, v = TextureWrap::repeat;
+  bool repeat() const { return u == TextureWrap::repeat && v == TextureWrap::repeat; }
+  auto operator<=>(const TextureWraps&) const = default;
+};
+
+/// A picture used by materials; several materials may share one. A picture with two wraps is two textures.
 struct Texture {
   std::filesystem::path file;  ///< its source, for messages
   Bitmap bitmap;  ///< 8-bit; albedo maps are sRGB-encoded
+  TextureWraps wraps = {};
 };
 
 /// How a surface scatters light. Real-time techniques show only diffuse and rough conductors as the path tracer does.

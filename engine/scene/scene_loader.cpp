@@ -50,7 +50,7 @@ Material readMaterial(const aiMaterial& source, TextureLoader& textures, const f
   Material material = colours(source);
   if (numberOf(source, AI_MATKEY_METALLIC_FACTOR))
     setMetallicRoughness(material, source,
-                         textures.mean(pictureOf(source, {aiTextureType_METALNESS, aiTextureType_UNKNOWN})));
+                         textures.mean(pictureOf(source, {aiTextureType_METALNESS, aiTextureType_UNKNOWN}).name));
   setEmission(material, source, textures);
   setOpacity(material, source, file);
   setAlbedoAndMask(material, source, textures);

@@ -9,17 +9,29 @@
 
 namespace lucerna {
 
-namespace {
-/// Bytes of the nearest texel; texture coordinates wrap.
-const std::uint8_t* bytesAt(const Bitmap& bitmap, const glm::dvec2& uv) {
-  const auto wrap = [](double t, int n) { return std::min(static_cast<int>((t - std::floor(t)) * n), n - 1); };
-  const int x = wrap(uv.x, bitmap.width), y = bitmap.height - 1 - wrap(uv.y, bitmap.height);
+double wrapped(double coordinate, TextureWrap wrap) {
+  switch (wrap) {
+    case TextureWrap::edge: return std::clamp(coordinate, 0.0, 1.0);
+    case TextureWrap::mirror: return 1.0 - std::abs(1.0 - (coordinate - 2.0 * std::floor(0.5 * coordinate)));
+    case TextureWrap::repeat: break;
+  }
+  return coordinate - std::floor(coordinate);
+}
+
+const std::uint8_t* nearestTexel(const Texture& texture, const glm::dvec2& uv) {
+  const Bitmap& bitmap = texture.bitmap;
+  const auto texel = [](double t, TextureWrap wrap, int n) {
+    return std::min(static_cast<int>(wrapped(t, wrap) * n), n - 1);
+  };
+  const int x = texel(uv.x, texture.wraps.u, bitmap.width),
+            y = bitmap.height - 1 - texel(uv.y, texture.wraps.v, bitmap.height);
   return bitmap.rgba.data() +
          4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(bitmap.width) + static_cast<std::size_t>(x));
 }
 
-glm::dvec3 texelAt(const Bitmap& bitmap, const glm::dvec2& uv) {
-  const std::uint8_t* texel = bytesAt(bitmap, uv);
+namespace {
+glm::dvec3 texelAt(const Texture& texture, const glm::dvec2& uv) {
+  const std::uint8_t* texel = nearestTexel(texture, uv);
   glm::dvec3 value;
   for (int c = 0; c < 3; ++c) value[c] = static_cast<double>(linearFromSrgb(static_cast<float>(texel[c]) / 255.0f));
   return value;
@@ -47,24 +59,24 @@ glm::dvec3 meanOverParts(const std::array<glm::vec2, 3>& uv, const F& valueAt) {
 }
 }  // namespace
 
-glm::dvec3 meanTexture(const Bitmap& bitmap, const std::array<glm::vec2, 3>& uv) {
-  return meanOverParts(uv, [&](const glm::dvec2& at) { return texelAt(bitmap, at); });
+glm::dvec3 meanTexture(const Texture& texture, const std::array<glm::vec2, 3>& uv) {
+  return meanOverParts(uv, [&](const glm::dvec2& at) { return texelAt(texture, at); });
 }
 
 glm::dvec3 meanAlbedo(const Scene& scene, const Material& material, const std::array<glm::vec2, 3>& uv) {
-  const auto bitmap = [&](int texture) {
-    return texture >= 0 ? &scene.textures[static_cast<std::size_t>(texture)].bitmap : nullptr;
+  const auto textureOf = [&](int index) {
+    return index >= 0 ? &scene.textures[static_cast<std::size_t>(index)] : nullptr;
   };
-  const Bitmap* colour = bitmap(material.diffuseTexture);
+  const Texture* colour = textureOf(material.diffuseTexture);
   Material mean = material;
   if (!material.metalMap) {
     if (colour) mean.diffuse *= glm::vec3(meanTexture(*colour, uv));
     return glm::dvec3(wholeReflectance(mean));
   }
   const MetalMap& map = *material.metalMap;
-  const Bitmap* metal = bitmap(map.texture);
+  const Texture* metal = textureOf(map.texture);
   const auto metallicAt = [&](const glm::dvec2& at) {
-    return static_cast<double>(map.metallic) * (metal ? bytesAt(*metal, at)[2] / 255.0 : 1.0);
+    return static_cast<double>(map.metallic) * (metal ? nearestTexel(*metal, at)[2] / 255.0 : 1.0);
   };
   const auto colourAt = [&](const glm::dvec2& at) {
     return glm::dvec3(map.base) * (colour ? texelAt(*colour, at) : glm::dvec3(1.0));

@@ -45,13 +45,26 @@ vec2 texCoordAt(uint triangle, vec2 barycentrics) {
   return ab.xy + barycentrics.x * (ab.zw - ab.xy) + barycentrics.y * (c - ab.xy);
 }
 
-// Wraps in both directions; bilinear between texel centres.
+// Bilinear between texel centres, as OpenGL's filter is [OpenGL 4.3, 8.14.2]. Beyond the edge lie the texels of
+// the other side or, clamped or mirrored, those of the edge again.
 vec4 readAtlas(sampler2DArray atlas, PathTexture t, vec2 texCoord) {
   ivec2 size = ivec2(t.width, t.height);
-  vec2 p = fract(texCoord) * vec2(size) - 0.5;
+  vec2 place = fract(texCoord);
+#if TEXTURE_WRAPS
+  ivec2 wrap = ivec2(t.wrapU, t.wrapV);
+  vec2 mirrored = 1.0 - abs(1.0 - 2.0 * fract(0.5 * texCoord));
+  place = mix(place, clamp(texCoord, 0.0, 1.0), equal(wrap, ivec2(PATH_WRAP_EDGE)));
+  place = mix(place, mirrored, equal(wrap, ivec2(PATH_WRAP_MIRROR)));
+#endif
+  vec2 p = place * vec2(size) - 0.5;
   vec2 floored = floor(p);
   vec2 f = p - floored;
   ivec2 low = clampedInt(floored, ivec2(-1), size - 1), high = low + 1;
+#if TEXTURE_WRAPS
+  bvec2 repeats = equal(wrap, ivec2(PATH_WRAP_REPEAT));
+  low = ivec2(repeats.x ? low.x : max(low.x, 0), repeats.y ? low.y : max(low.y, 0));
+  high = ivec2(repeats.x ? high.x : min(high.x, size.x - 1), repeats.y ? high.y : min(high.y, size.y - 1));
+#endif
   low += size * ivec2(lessThan(low, ivec2(0)));
   high -= size * ivec2(greaterThanEqual(high, size));
   ivec2 corner = ivec2(t.x, t.y);

@@ -23,6 +23,11 @@ SHARED_BEGIN
 
 #define PATH_NO_TEXTURE (-1)
 
+// What lies beyond a texture's picture: TextureWrap (scene/scene.hpp).
+#define PATH_WRAP_REPEAT 0
+#define PATH_WRAP_EDGE 1
+#define PATH_WRAP_MIRROR 2
+
 // Data of the inspected pixel, stored after the lanes' state, in uvec4: number of records; vertices of the current
 // path; records. A record: radiance and sample; scatterings, kind of light, its number, number of vertices; the
 // vertices, and the light's position (w: 1 at infinity, then the direction to it).
@@ -58,7 +63,8 @@ struct PathTexture {
   int layer;
   int x, y;                 // texel of its lower left corner
   int width, height;
-  int padding0, padding1, padding2;
+  int wrapU, wrapV;         // PATH_WRAP_; read with TEXTURE_WRAPS
+  int padding0;
 };
 
 struct PathMaterial {

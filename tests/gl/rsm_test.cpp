@@ -267,6 +267,22 @@ TEST_F(ReflectiveShadowMapGl, AlbedoTextureScalesTheFlux) {
   EXPECT_EQ(drawn.totalFlux.z, 0.0);
 }
 
+TEST_F(ReflectiveShadowMapGl, AClampedPictureIsClampedInTheMapToo) {
+  SceneBuilder builder;
+  const int material = builder.material(glm::vec3(0.5f)), repeated = builder.material(glm::vec3(0.5f)),
+            picture = builder.texture(2, 1, {0, 0, 0, 255, 255, 255, 255, 255}),
+            other = builder.texture(2, 1, {255, 0, 0, 255, 255, 0, 0, 255});
+  builder.scene().textures[static_cast<std::size_t>(picture)].wraps.u = TextureWrap::edge;
+  builder.materialAt(material).diffuseTexture = picture;
+  builder.materialAt(repeated).diffuseTexture = other;
+  builder.plate({0, 0, 0}, {0, 0, 2}, {2, 0, 0}, material);
+  builder.plate({4, 0, 0}, {0, 0, 2}, {2, 0, 0}, repeated);
+  for (std::size_t i = 0; i < 4; ++i) builder.scene().vertices[i].texCoord.x += 1.0f;  // beside the white texel
+  const Drawn drawn = draw(builder.scene(), 128, {.anisotropy = 4.0f});
+  EXPECT_NEAR(drawn.totalFlux.y, 0.5 * 4.0, 0.1);
+  EXPECT_NEAR(drawn.totalFlux.x, 2.0 * 0.5 * 4.0, 0.2);
+}
+
 // A texel of the map is averaged with others, so anisotropic filters would be wasted on it. What is drawn later has
 // them again.
 TEST_F(ReflectiveShadowMapGl, ColoursAreReadIsotropically) {

@@ -83,6 +83,25 @@ TEST(SceneFeaturesTest, AMapOfMetalIsACoat) {
   EXPECT_FALSE(analyse(scene).normalMaps);
 }
 
+TEST(SceneFeaturesTest, ATextureThatDoesNotRepeatIsSeenWhereverItIsUsed) {
+  const std::vector<std::function<void(Material&)>> uses = {
+      [](Material& m) { m.diffuseTexture = 0; }, [](Material& m) { m.alphaTexture = 0; },
+      [](Material& m) { m.emissionTexture = 0; }, [](Material& m) { m.normalTexture = 0; },
+      [](Material& m) {
+        m.metalMap = MetalMap{glm::vec3(1.0f), 1.0f, 1.0f, 0};
+      }};
+  for (const auto& use : uses) {
+    Scene scene = plainScene();
+    scene.textures.resize(1);
+    use(scene.materials[0]);
+    EXPECT_FALSE(analyse(scene).textureWraps);
+    scene.textures[0].wraps.v = TextureWrap::mirror;
+    EXPECT_TRUE(analyse(scene).textureWraps);
+    scene.textures[0].wraps = {TextureWrap::edge, TextureWrap::repeat};
+    EXPECT_TRUE(analyse(scene).textureWraps);
+  }
+}
+
 TEST(SceneFeaturesTest, MaterialsOfNoDrawnMeshDoNotCount) {
   Scene scene = plainScene();
   Material& unused = scene.materials[1];

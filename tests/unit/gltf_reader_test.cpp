@@ -270,6 +270,45 @@ TEST(GltfReader, APictureOfAnExtensionAloneIsNamed) {
   EXPECT_TRUE(contains(loggedWarnings()[0], "EXT_texture_webp (using a default)")) << loggedWarnings()[0];
 }
 
+// 5.26: 10497 REPEAT, also where nothing is said, 33071 CLAMP_TO_EDGE, 33648 MIRRORED_REPEAT. A picture is read once
+// for each pair of them.
+TEST(GltfReader, SamplersSayHowPicturesContinue) {
+  Gltf gltf;
+  const std::string red =
+      base64(std::string("\x42\x4d\x3a\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0\1\0\0\0\1\0\0\0\1\0"
+                         "\x18\0\0\0\0\0\4\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\xff\0",
+                         58));
+  gltf.attributes()["TEXCOORD_0"] = gltf.floats({0, 0, 1, 0, 0, 1}, "VEC2");
+  gltf.primitive()["material"] = 0;
+  gltf.root["images"] = {{{"uri", "data:image/bmp;base64," + red}}};
+  gltf.root["samplers"] = {Json{{"wrapS", 33071}, {"wrapT", 33648}}, Json{{"wrapT", 33071}}, Json::object()};
+  gltf.root["textures"] = {{{"source", 0}, {"sampler", 0}},
+                           {{"source", 0}, {"sampler", 1}},
+                           {{"source", 0}, {"sampler", 2}},
+                           {{"source", 0}}};
+  gltf.root["materials"] = {
+      {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}, {"metallicRoughnessTexture", {{"index", 1}}}}},
+       {"normalTexture", {{"index", 2}}},
+       {"emissiveTexture", {{"index", 3}}},
+       {"emissiveFactor", {1, 1, 1}}}};
+  const Scene scene = gltf.load();
+  EXPECT_TRUE(loggedWarnings().empty());
+  const Material& material = scene.materials.at(0);
+  const auto wraps = [&](int texture) { return scene.textures.at(static_cast<std::size_t>(texture)).wraps; };
+  EXPECT_EQ(wraps(material.diffuseTexture), (TextureWraps{TextureWrap::edge, TextureWrap::mirror}));
+  EXPECT_EQ(wraps(material.metalMap->texture), (TextureWraps{TextureWrap::repeat, TextureWrap::edge}));
+  EXPECT_EQ(wraps(material.normalTexture), TextureWraps{});
+  EXPECT_EQ(material.normalTexture, material.emissionTexture);
+  EXPECT_EQ(scene.textures.size(), 3u);
+  for (const Json& wrong : {Json(5), Json("REPEAT"), Json(33071.5)}) {
+    gltf.root["samplers"][1]["wrapT"] = wrong;
+    const std::string message = gltf.refusal();
+    EXPECT_TRUE(contains(message, "a.gltf")) << message;
+    EXPECT_TRUE(contains(message, "wrapT")) << message;
+    EXPECT_TRUE(contains(message, "33071 (CLAMP_TO_EDGE)")) << message;
+  }
+}
+
 TEST(GltfReader, PicturesWithPercentEncodedNamesAndInsideTheFileAreRead) {
   const TempFolder folder;
   writePng(folder / "left right \xc3\xa4.png", Bitmap{1, 1, {0x30, 0x20, 0x10, 255}, false});

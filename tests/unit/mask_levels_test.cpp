@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -11,12 +12,16 @@
 namespace lucerna {
 namespace {
 
-/// Reference: bilinear interpolation of a repeated picture at u, v in [0, 1), in double precision.
-double interpolated(const std::vector<std::uint8_t>& texels, glm::ivec2 size, double u, double v) {
+/// Reference: bilinear interpolation of a picture at u, v in [0, 1), in double precision. Of a mirrored one the texel
+/// beyond the edge is that of the edge, too.
+double interpolated(const std::vector<std::uint8_t>& texels, glm::ivec2 size, double u, double v, TextureWraps wraps) {
   const double x = u * size.x - 0.5, y = v * size.y - 0.5, fx = x - std::floor(x), fy = y - std::floor(y);
+  const auto place = [](double at, int n, TextureWrap wrap) {
+    const int i = static_cast<int>(at);
+    return wrap == TextureWrap::repeat ? (i % n + n) % n : std::clamp(i, 0, n - 1);
+  };
   const auto at = [&](double column, double row) {
-    const int i = (static_cast<int>(column) % size.x + size.x) % size.x,
-              j = (static_cast<int>(row) % size.y + size.y) % size.y;
+    const int i = place(column, size.x, wraps.u), j = place(row, size.y, wraps.v);
     return static_cast<double>(texels[static_cast<std::size_t>(j * size.x + i)]) / 255.0;
   };
   const double left = std::floor(x), below = std::floor(y);
@@ -24,11 +29,12 @@ double interpolated(const std::vector<std::uint8_t>& texels, glm::ivec2 size, do
          (at(left, below + 1.0) * (1.0 - fx) + at(left + 1.0, below + 1.0) * fx) * fy;
 }
 
-double coverageOf(const std::vector<std::uint8_t>& texels, glm::ivec2 size) {
+double coverageOf(const std::vector<std::uint8_t>& texels, glm::ivec2 size, TextureWraps wraps = {}) {
   constexpr int kSide = 700;
   int covered = 0;
   for (int j = 0; j < kSide; ++j)
-    for (int i = 0; i < kSide; ++i) covered += interpolated(texels, size, (i + 0.5) / kSide, (j + 0.5) / kSide) >= 0.5;
+    for (int i = 0; i < kSide; ++i)
+      covered += interpolated(texels, size, (i + 0.5) / kSide, (j + 0.5) / kSide, wraps) >= 0.5;
   return covered / (static_cast<double>(kSide) * kSide);
 }
 
@@ -51,8 +57,8 @@ TEST(MaskLevels, KeepTheCoverageOfTheMask) {
     for (const double share : {0.1, 0.3, 0.6}) {
       const std::vector<std::uint8_t> texels = leaves(size, 12, share);
       const double right = coverageOf(texels, size);
-      EXPECT_NEAR(maskCoverage(texels, size), right, 0.01);
-      const auto levels = maskLevels(texels, size);
+      EXPECT_NEAR(maskCoverage(texels, size, {}), right, 0.01);
+      const auto levels = maskLevels(texels, size, {});
       glm::ivec2 side = size;
       for (const std::vector<std::uint8_t>& level : levels) {
         side = glm::max(side / 2, glm::ivec2(1));
@@ -66,10 +72,23 @@ TEST(MaskLevels, KeepTheCoverageOfTheMask) {
     }
 }
 
+// Few texels, so that their borders count: a bar along the left edge, and a corner.
+TEST(MaskLevels, BordersCountAsThePictureContinues) {
+  constexpr TextureWrap kAll[] = {TextureWrap::repeat, TextureWrap::edge, TextureWrap::mirror};
+  const std::vector<std::uint8_t> bar{255, 0, 0, 0, 200, 0, 0, 0, 180, 0, 0, 0}, corner{255, 90, 0, 0, 140, 255};
+  for (const TextureWrap u : kAll)
+    for (const TextureWrap v : kAll) {
+      EXPECT_NEAR(maskCoverage(bar, {4, 3}, {u, v}), coverageOf(bar, {4, 3}, {u, v}), 4e-3);
+      EXPECT_NEAR(maskCoverage(corner, {2, 3}, {u, v}), coverageOf(corner, {2, 3}, {u, v}), 4e-3);
+    }
+  // A clamped edge is whole up to the border: half the first texel's reach more.
+  EXPECT_GT(coverageOf(bar, {4, 3}, {TextureWrap::edge, TextureWrap::edge}), 0.2);
+}
+
 TEST(MaskLevels, FullAndEmptyMasksStayAsTheyAre) {
   for (const int value : {0, 255}) {
     const std::vector<std::uint8_t> texels(6 * 4, static_cast<std::uint8_t>(value));
-    for (const auto& level : maskLevels(texels, {6, 4}))
+    for (const auto& level : maskLevels(texels, {6, 4}, {}))
       for (const std::uint8_t v : level) EXPECT_EQ(v, value);
   }
 }

@@ -215,9 +215,9 @@ TEST(MtlFile, OptionsStandBeforePictures) {
         Case{"map_Kd -s 2 lr.png", {2, 1}}, Case{"map_Kd -o 0.25 0.5 0 -s 2 2 2 lr.png", {2.25, 2.5}},
         Case{"map_Kd -blendu on -blendv off -texres 512 -boost 2 -mm 0 1 -t 0 0 0 left right.png", {1, 1}},
         Case{"map_Kd -colorspace sRGB -type sphere \"left right.png\"", {1, 1}},
-        Case{"map_Kd -clamp on lr.png", {1, 1}}, Case{"map_Kd lr.png -s 2 2 2", {2, 2}},
-        Case{"map_kd lr.png # the wall", {1, 1}}, Case{"map_Kd D:\\maps\\LR.PNG", {1, 1}},
-        Case{"map_Kd .\\lr.png", {1, 1}}}) {
+        Case{"map_Kd -clamp on lr.png", {1, 1}}, Case{"map_Kd -clamp on -s 2 2 lr.png", {2, 2}},
+        Case{"map_Kd lr.png -s 2 2 2", {2, 2}}, Case{"map_kd lr.png # the wall", {1, 1}},
+        Case{"map_Kd D:\\maps\\LR.PNG", {1, 1}}, Case{"map_Kd .\\lr.png", {1, 1}}}) {
     const Scene scene = loadMtl(folder, std::string("newmtl a\n") + c.line + "\n");
     ASSERT_EQ(scene.textures.size(), 1u) << c.line;
     EXPECT_EQ(scene.textures[0].bitmap.width, 2) << c.line;
@@ -228,13 +228,36 @@ TEST(MtlFile, OptionsStandBeforePictures) {
   // What is not done is said.
   for (const auto& [line, said] : {std::pair{"map_Kd -mm 0.2 0.5 lr.png", "-mm 0.2 0.5"},
                                    {"map_Kd -colorspace linear lr.png", "-colorspace linear"},
-                                   {"map_Kd -clamp on -s 2 2 lr.png", "-clamp on"},
                                    {"map_Kd lr.png\nmap_Ns lr.png", "map_Ns"},
                                    {"map_Kd lr.png\ndisp lr.png", "disp"}}) {
     loadMtl(folder, std::string("newmtl a\n") + line + "\n");
     EXPECT_EQ(loggedWarnings().size(), 1u) << line << warnings();
     EXPECT_TRUE(contains(warnings(), said)) << line << warnings();
   }
+}
+
+// One picture with and without -clamp is two textures; two materials of the same share one.
+TEST(MtlFile, ClampingIsOfAPicturesUse) {
+  const TempFolder folder;
+  writeLeftRight(folder / "lr.png");
+  const Scene scene = loadMtl(folder,
+                              "newmtl a\nmap_Kd -clamp on lr.png\nmap_Ke -clamp off lr.png\n"
+                              "newmtl b\nmap_Kd -clamp on lr.png\n",
+                              kQuad + "usemtl b\nf 1/1 2/2 3/3\n");
+  EXPECT_TRUE(loggedWarnings().empty()) << warnings();
+  ASSERT_EQ(scene.textures.size(), 2u);
+  const auto wraps = [&](int texture) { return scene.textures.at(static_cast<std::size_t>(texture)).wraps; };
+  EXPECT_EQ(wraps(scene.materials[0].diffuseTexture), (TextureWraps{TextureWrap::edge, TextureWrap::edge}));
+  EXPECT_EQ(wraps(scene.materials[0].emissionTexture), TextureWraps{});
+  EXPECT_EQ(scene.materials[0].diffuseTexture, scene.materials[1].diffuseTexture);
+  // A picture that is its own mask is read as the mask says.
+  folder.write("a.tga", std::string("\0\0\2\0\0\0\0\0\0\0\0\0\2\0\1\0\x20\x08\0\0\xff\xff\0\0\xff\0", 26));
+  const Scene masked = loadMtl(folder, "newmtl a\nmap_Kd a.tga\nmap_d -clamp on a.tga\n");
+  ASSERT_EQ(masked.textures.size(), 2u) << warnings();
+  EXPECT_TRUE(masked.materials[0].alphaMasked);
+  EXPECT_EQ(masked.materials[0].diffuseTexture, 0);
+  EXPECT_EQ(masked.materials[0].alphaTexture, 1);
+  EXPECT_EQ(masked.textures[1].wraps.u, TextureWrap::edge);
 }
 
 TEST(MtlFile, NumbersAreReadAsTheyAreWritten) {

@@ -165,6 +165,14 @@ TEST(ReferenceKey, FollowsContentAndNothingElse) {
   EXPECT_NE(changed([](Scene& s) { s.sun->irradiance.z += 1e-3f; }), first);
   EXPECT_NE(changed([](Scene& s) { s.media.emplace_back(); }), first);
   EXPECT_NE(changed([](Scene& s) { s.textures.emplace_back().bitmap.rgba = {1, 2, 3, 4}; }), first);
+  const auto wrapped = [&](TextureWraps wraps) {
+    return changed([&](Scene& s) { s.textures.emplace_back().wraps = wraps; });
+  };
+  const std::string repeated = wrapped({}), clamped = wrapped({TextureWrap::edge, TextureWrap::repeat});
+  EXPECT_NE(clamped, repeated);
+  EXPECT_NE(clamped, wrapped({TextureWrap::repeat, TextureWrap::edge}));
+  EXPECT_NE(clamped, wrapped({TextureWrap::mirror, TextureWrap::repeat}));
+  EXPECT_NE(wrapped({TextureWrap::repeat, TextureWrap::edge}), wrapped({TextureWrap::repeat, TextureWrap::mirror}));
   EXPECT_NE(changed([](Scene& s) { s.environment.emplace(); }), first);
   Camera turned = camera;
   turned.verticalFov += 1e-6;

@@ -217,6 +217,39 @@ TEST(SceneLoader, TexturesAreFoundBehindBackSlashesAndShared) {
   EXPECT_TRUE(loggedWarnings().empty());
 }
 
+// Other formats say it by Assimp; Collada in Maya's words.
+TEST(SceneLoader, TexturesContinueAsColladaSays) {
+  const TempFolder folder;
+  writePicture(folder / "a.png", 10);
+  const auto wraps = [&](const std::string& words) {
+    clearLoggedWarnings();
+    const Scene scene = loadScene(folder.write("model.dae", R"(<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1"><asset><up_axis>Y_UP</up_axis></asset>
+<library_images><image id="img"><init_from>a.png</init_from></image></library_images>
+<library_effects><effect id="e"><profile_COMMON>
+<newparam sid="surface"><surface type="2D"><init_from>img</init_from></surface></newparam>
+<newparam sid="sampler"><sampler2D><source>surface</source></sampler2D></newparam>
+<technique sid="c"><lambert><diffuse><texture texture="sampler" texcoord="T"><extra><technique profile="MAYA">)" +
+                                                                words + R"(</technique></extra></texture></diffuse>
+</lambert></technique></profile_COMMON></effect></library_effects>
+<library_materials><material id="m"><instance_effect url="#e"/></material></library_materials>
+<library_geometries><geometry id="g"><mesh>
+<source id="p"><float_array id="pa" count="9">0 0 0 1 0 0 0 1 0</float_array><technique_common>
+<accessor source="#pa" count="3" stride="3"><param name="X" type="float"/><param name="Y" type="float"/>
+<param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<triangles count="1" material="m"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles>
+</mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="s"><node><instance_geometry url="#g"><bind_material><technique_common>
+<instance_material symbol="m" target="#m"/></technique_common></bind_material></instance_geometry></node></visual_scene>
+</library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>)"));
+    return scene.textures.at(0).wraps;
+  };
+  EXPECT_EQ(wraps(""), TextureWraps{});
+  EXPECT_EQ(wraps("<wrapU>0</wrapU><wrapV>1</wrapV><mirrorV>1</mirrorV>"),
+            (TextureWraps{TextureWrap::edge, TextureWrap::mirror}));
+}
+
 TEST(SceneLoader, AMissingOrBrokenTextureIsOneWarningAndAChecker) {
   const TempFolder folder;
   folder.write("broken.png", "no picture");

@@ -1,6 +1,7 @@
 #include "radiosity/original/display.hpp"
 
 #include "base/error.hpp"
+#include "forward/texture_wraps.hpp"
 #include "gl/draw.hpp"
 #include "gl/pass.hpp"
 #include "radiosity/patches.hpp"
@@ -202,7 +203,7 @@ RadTextures texturesOf(const Scene& scene, double longestEdge, std::span<const R
         "{:.6g} units (--edge, --triangles)",
         file, triangles.size(), mesh.patches.size(), scene.file.string(), patches.longestEdge);
   RadTextures textures;
-  for (const Texture& texture : scene.textures) textures.pictures.push_back(&texture.bitmap);
+  for (const Texture& texture : scene.textures) textures.pictures.push_back(&texture);
   for (const Patch& patch : mesh.patches) {
     textures.ofTriangle.push_back(scene.materials[static_cast<std::size_t>(patch.material)].diffuseTexture);
     textures.texCoords.push_back(patch.texCoord);
@@ -213,9 +214,10 @@ RadTextures texturesOf(const Scene& scene, double longestEdge, std::span<const R
 namespace {
 
 /// Bottom row first, with mipmaps; texels are not decoded, since colours are multiplied as displayed.
-gl::Texture uploaded(const Bitmap& bitmap) {
+gl::Texture uploaded(const Texture& picture) {
+  const Bitmap& bitmap = picture.bitmap;
   const glm::ivec2 size(bitmap.width, bitmap.height);
-  const gl::Sampling sampling{gl::Filter::linearMipmaps, gl::Filter::linear, gl::Wrap::repeat};
+  const gl::Sampling sampling = withWraps({gl::Filter::linearMipmaps, gl::Filter::linear}, picture.wraps);
   gl::Texture texture("radiosity picture", gl::Format::rgba8, size, sampling,
                       static_cast<int>(std::bit_width(static_cast<unsigned>(std::max(size.x, size.y)))));
   const auto row = static_cast<std::ptrdiff_t>(4 * size.x);

@@ -58,7 +58,7 @@ std::vector<std::array<glm::vec3, 3>> cornerColours(std::span<const RadTriangle>
 /// Pictures on the triangles; the displayed value is their texel times the colour, in display values [RAD2008 figure
 /// 4.3].
 struct RadTextures {
-  std::vector<const Bitmap*> pictures;
+  std::vector<const Texture*> pictures;
   std::vector<int> ofTriangle;  ///< index into `pictures`, -1: none; one per triangle
   std::vector<std::array<glm::vec2, 3>> texCoords;  ///< of its corners, v = 0 is the bottom row
 };

@@ -8,7 +8,8 @@
 // SHARED_WITH_RAYS: rays find the points too (hemisphere.comp), both weighted by the balance heuristic [Veach1997] of
 // the densities over solid angle, r^2 / (A c2) of points and n c1 / pi of n rays:
 //   E = Phi c1 c2 / (pi r^2 + n A c1 c2),
-// bounded next to a point. A is the area that one texel stands for.
+// bounded next to a point. A is the area that one texel stands for. The bounces' points stand for a cell: beside a
+// small lamp, whose light changes within it, they get the mean over a disc of its area, without rays.
 // Visibility: each lane keeps four of its nodes, drawn in proportion to their contribution (reservoir sampling
 // [Chao1982]). One ray per lane, systematically spread over all contributions, goes through the scene's
 // hierarchy to a texel of such a node, drawn by its flux.
@@ -47,6 +48,9 @@ uniform uint last;         // 1: after this dispatch records have all their ligh
 uniform uint firstGroup;  // of `lit`
 #if SHARED_WITH_RAYS
 uniform float raysAround;  // of a record
+uniform float cell;        // of the bounces' points, scene units; 0: these are records
+float reach2 = 0.0;
+#include "irradiance_cache/small_lamps.glsl"
 #endif
 shared vec3 sums[CACHE_LANES];
 #if VISIBILITY
@@ -63,9 +67,22 @@ LightNode nodeAt(uint node) {
   return unpackNode(texelFetch(treeNodes, at), texelFetch(treeNodes, at + 1), texelFetch(treeNodes, at + 2));
 }
 
+#if SHARED_WITH_RAYS
+// What takes the place of r^2 for the mean over a disc of the squared radius `reach2` around the record. A Lambertian
+// point at the height h, in a plane parallel to it, sends the share F = (1 - a / q) / 2 of its flux to the disc
+// [Howell2010, factor B-13], with a = r^2 - reach2 and q^2 = a^2 + 4 reach2 h^2: the mean is Phi h^2 / (pi r^2 S),
+// S = reach2 h^2 / (r^2 F).
+float spread2(float height, float r2) {
+  float a = r2 - reach2, b2 = 4.0 * reach2 * height * height, q = sqrt(a * a + b2);
+  return q * (a > 0.0 ? q + a : b2 / (q - a)) / (2.0 * r2);  // without cancellation
+}
+#endif
+
 // Irradiance from a point of that flux, at a distance of root r2.
 vec3 ofPoint(vec3 flux, float area, float c1, float c2, float r2) {
 #if SHARED_WITH_RAYS
+  if (reach2 > 0.0)  // at most all of it on the disc
+    return flux * (c1 * c2 / (kPi * max(spread2(c1 * sqrt(r2), r2), reach2 * c1 * c2)));
   return flux * (c1 * c2 / (kPi * r2 + raysAround * area * c1 * c2));
 #else
   return flux * (c1 * c2 / (kPi * r2 + area * c2));
@@ -194,6 +211,9 @@ void main() {
   if (index >= uint(records.length())) return;
   CacheRecord record = records[index];
   if ((record.state & CACHE_ALONE) != 0u) return;  // what sees no surface lights none
+#if SHARED_WITH_RAYS
+  if (isNearSmallLamp(record.position - cache.rayOrigin, cell)) reach2 = cell * cell / kPi;
+#endif
   uint seed = pcg4d(uvec4(record.cell)).x;
   Found found = gatherAt(record.position, record.normal, lane, pcg4d(uvec4(seed, lane, 0u, 0u)).x);
 #if VISIBILITY

@@ -34,6 +34,10 @@ const float kGap = 0.1, kNear = 1.0;  // cells
 const uint kMostShut = 48u;           // rays that may end there
 #endif
 
+#if LINKS && EMISSION
+#include "irradiance_cache/small_lamps.glsl"
+#endif
+
 #if BOUNCED
 uniform vec3 bounceMinimum;  // of cell 0, in the ray caster's coordinates
 uniform float bounceCell;    // scene units
@@ -164,7 +168,10 @@ vec3 lookAround(CacheRecord record, uint index, uint ray) {
   }
   Surface at = surfaceAt(hit.triangle, hit.barycentrics, direction);
 #if EMISSION && OWN
-  sum += kPi * emissionNear(at, hit, dot(direction, surface.normal), direction);
+#if LINKS
+  if (!isNearSmallLamp(surface.position, bounceCell))
+#endif
+    sum += kPi * emissionNear(at, hit, dot(direction, surface.normal), direction);
 #endif
 #if BOUNCED
   uint point = pointNear(at, vec4(unitFloat(randomWords(numbers, 1u, kPurposePick).xy),
