@@ -9,7 +9,7 @@
 // the densities over solid angle, r^2 / (A c2) of points and n c1 / pi of n rays:
 //   E = Phi c1 c2 / (pi r^2 + n A c1 c2),
 // bounded next to a point. A is the area that one texel stands for. The bounces' points stand for a cell: beside a
-// small lamp, whose light changes within it, they get the mean over a disc of its area, without rays.
+// small lamp, whose light changes within it, they get its mean, without rays.
 // Visibility: each lane keeps four of its nodes, drawn in proportion to their contribution (reservoir sampling
 // [Chao1982]). One ray per lane, systematically spread over all contributions, goes through the scene's
 // hierarchy to a texel of such a node, drawn by its flux.
@@ -49,7 +49,7 @@ uniform uint firstGroup;  // of `lit`
 #if SHARED_WITH_RAYS
 uniform float raysAround;  // of a record
 uniform float cell;        // of the bounces' points, scene units; 0: these are records
-float reach2 = 0.0;
+bool standsForCell = false;
 #include "irradiance_cache/small_lamps.glsl"
 #endif
 shared vec3 sums[CACHE_LANES];
@@ -67,27 +67,42 @@ LightNode nodeAt(uint node) {
   return unpackNode(texelFetch(treeNodes, at), texelFetch(treeNodes, at + 1), texelFetch(treeNodes, at + 2));
 }
 
-#if SHARED_WITH_RAYS
-// What takes the place of r^2 for the mean over a disc of the squared radius `reach2` around the record. A Lambertian
-// point at the height h, in a plane parallel to it, sends the share F = (1 - a / q) / 2 of its flux to the disc
-// [Howell2010, factor B-13], with a = r^2 - reach2 and q^2 = a^2 + 4 reach2 h^2: the mean is Phi h^2 / (pi r^2 S),
-// S = reach2 h^2 / (r^2 F).
-float spread2(float height, float r2) {
-  float a = r2 - reach2, b2 = 4.0 * reach2 * height * height, q = sqrt(a * a + b2);
-  return q * (a > 0.0 ? q + a : b2 / (q - a)) / (2.0 * r2);  // without cancellation
-}
-#endif
-
 // Irradiance from a point of that flux, at a distance of root r2.
 vec3 ofPoint(vec3 flux, float area, float c1, float c2, float r2) {
 #if SHARED_WITH_RAYS
-  if (reach2 > 0.0)  // at most all of it on the disc
-    return flux * (c1 * c2 / (kPi * max(spread2(c1 * sqrt(r2), r2), reach2 * c1 * c2)));
   return flux * (c1 * c2 / (kPi * r2 + raysAround * area * c1 * c2));
 #else
   return flux * (c1 * c2 / (kPi * r2 + area * c2));
 #endif
 }
+
+#if SHARED_WITH_RAYS
+// What takes the place of r^2 for the mean over a disc of the squared radius `reach2`. A Lambertian point at the height
+// h, in a plane parallel to it, sends the share F = (1 - a / q) / 2 of its flux to the disc [Howell2010, factor B-13],
+// with a = r^2 - reach2 and q^2 = a^2 + 4 reach2 h^2: the mean is Phi h^2 / (pi r^2 S), S = reach2 h^2 / (r^2 F).
+float spread2(float height, float r2, float reach2) {
+  float a = r2 - reach2, b2 = 4.0 * reach2 * height * height, q = sqrt(a * a + b2);
+  return q * (a > 0.0 ? q + a : b2 / (q - a)) / (2.0 * r2);  // without cancellation
+}
+
+// Mean irradiance over the cell around a point in the plane of `normal`: of discs in its four quarters.
+vec3 overCell(LightNode here, vec3 away, vec3 normal) {
+  vec3 lean = abs(normal);
+  int axis = lean.x > max(lean.y, lean.z) ? 0 : lean.y > lean.z ? 1 : 2;
+  vec3 u = vec3(0.0), v = vec3(0.0);
+  u[(axis + 1) % 3] = v[(axis + 2) % 3] = 0.25 * cell;
+  u -= dot(u, normal) * normal;
+  v -= dot(v, normal) * normal;
+  float reach2 = cell * cell / (4.0 * kPi), height = dot(normal, away), sum = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    vec3 d = away + ((i & 1) != 0 ? u : -u) + ((i & 2) != 0 ? v : -v);
+    float r2 = dot(d, d), c1 = height * inversesqrt(r2), c2 = meanCosine(here, -d * inversesqrt(r2));
+    if (c1 > 0.0 && c2 > 0.0)  // at most all of it on the disc
+      sum += c1 * c2 / (kPi * max(spread2(height, r2, reach2), reach2 * c1 * c2));
+  }
+  return 0.25 * sum * here.flux;
+}
+#endif
 
 // What a lane has found: its sum, and four nodes drawn in proportion to their contribution, by random numbers that are
 // a quarter apart.
@@ -146,6 +161,12 @@ Found gatherAt(vec3 position, vec3 normal, uint lane, uint seed) {
       continue;
     }
     float c1 = height * inversesqrt(r2), c2 = meanCosine(here, -away * inversesqrt(r2));
+#if SHARED_WITH_RAYS
+    if (counts && standsForCell) {
+      add(found, overCell(here, away, normal), layerStart + node);
+      counts = false;
+    }
+#endif
     if (counts && c1 > 0.0 && c2 > 0.0)
       add(found, ofPoint(here.flux, here.area, c1, c2, r2), layerStart + node);
     // The next node that is not below this one.
@@ -212,7 +233,7 @@ void main() {
   CacheRecord record = records[index];
   if ((record.state & CACHE_ALONE) != 0u) return;  // what sees no surface lights none
 #if SHARED_WITH_RAYS
-  if (isNearSmallLamp(record.position - cache.rayOrigin, cell)) reach2 = cell * cell / kPi;
+  standsForCell = isNearSmallLamp(record.position - cache.rayOrigin, cell);
 #endif
   uint seed = pcg4d(uvec4(record.cell)).x;
   Found found = gatherAt(record.position, record.normal, lane, pcg4d(uvec4(seed, lane, 0u, 0u)).x);
