@@ -74,6 +74,15 @@ std::optional<SampleRange> sampleRange(const PathOptions& path) {
   return SampleRange{static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last)};
 }
 
+void resumeFrom(PathTracer& tracer, const std::string& checkpoint, const std::optional<SampleRange>& part) {
+  const std::vector<std::uint8_t> bytes = readFileBytes(checkpoint);
+  const std::uint32_t first = filmOf(bytes, checkpoint).first, wanted = part ? part->first : 0;
+  if (first != wanted)
+    throwBadInput("{}: its samples begin with number {}, not {}{}", checkpoint, first, wanted,
+                  part ? "" : " (a part of --samples; lucerna merge makes a whole)");
+  tracer.resume(bytes, checkpoint);
+}
+
 }  // namespace
 
 void PathOptions::declare(Command app) {
@@ -124,17 +133,6 @@ PathTracer::Settings tracerSettings(const PictureOptions& picture, const PathOpt
   return settings;
 }
 
-namespace {
-void resumeFrom(PathTracer& tracer, const std::string& checkpoint, const std::optional<SampleRange>& part) {
-  const std::vector<std::uint8_t> bytes = readFileBytes(checkpoint);
-  const std::uint32_t first = filmOf(bytes, checkpoint).first, wanted = part ? part->first : 0;
-  if (first != wanted)
-    throwBadInput("{}: its samples begin with number {}, not {}{}", checkpoint, first, wanted,
-                  part ? "" : " (a part of --samples; lucerna merge makes a whole)");
-  tracer.resume(bytes, checkpoint);
-}
-}  // namespace
-
 int renderPath(const CommonOptions& common, const PictureOptions& picture, const PathOptions& path,
                const SceneAt& sceneFile, const std::string& output) {
   PictureOptions rest = picture;
@@ -168,7 +166,7 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
     try {
       resumeFrom(tracer, checkpoint, part);
     } catch (const Error& error) {
-      if (!path.checkpoint.empty()) throw;
+      if (!path.checkpoint.empty() || error.kind() != ErrorKind::badInput) throw;
       isOfAnother = true;
       logWarning("{}; not resumed", error.what());
     }

@@ -253,10 +253,9 @@ nlohmann::ordered_json stagesJson(const std::vector<gl::StageStatistics>& stages
 
 nlohmann::ordered_json gatherJson(const RsmGather& gather) {
   const RsmGather::Counts& c = gather.counts();
-  const auto perFrame = [&](std::uint64_t sum) { return c.frames ? (sum + c.frames / 2) / c.frames : 0; };
-  return {{"refused", perFrame(c.refused)},
-          {"pixels", perFrame(c.pixels)},
-          {"gathered", perFrame(c.gathered)},
+  return {{"refused", c.perFrame(c.refused)},
+          {"pixels", c.perFrame(c.pixels)},
+          {"gathered", c.perFrame(c.gathered)},
           {"saving", c.saving()},
           {"frames", c.frames}};
 }

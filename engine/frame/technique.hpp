@@ -59,7 +59,7 @@ class FrameTechnique {
   virtual void addStagePictures(std::vector<StagePicture>&) const {}
   /// Names of its own stages that this scene and these settings do without.
   virtual void addLeftOut(std::vector<std::string>&) const {}
-  /// Lines for people after a picture, each with its end: what its frames did, and which light passes through walls.
+  /// Lines to print after a picture: what its frames did, and which walls its light passes through.
   virtual std::string summary() const { return {}; }
   /// Whether it shows media inside of bodies, if only as a preview.
   virtual bool previewsMedia() const { return false; }

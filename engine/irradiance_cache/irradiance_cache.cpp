@@ -174,8 +174,7 @@ bool IrradianceCache::follow(const Scene& scene, const std::vector<Bounds>& move
   if (kept_) kept_->allAnew = kept_->allAnew || !lampsAlone;
   moved_.insert(moved_.end(), moved.begin(), moved.end());
   scene_.fill(path_);
-  if (!emissiveBodies_.empty() && !(lampsAlone && moved.empty()))
-    emissiveBodies_ = emissiveBodies(scene, scene_.origin());
+  if (cached_ && !(lampsAlone && moved.empty())) emissiveBodies_ = emissiveBodies(scene, scene_.origin());
   typicalIrradiance_ = typicalOf(scene);
   prefetchedFrom_.reset();
   followed_ = true;

@@ -162,7 +162,7 @@ class IrradianceCache {
   std::uint32_t frame_ = 0;
   std::vector<Cascade> cascades_;  ///< of the previous frame
   shared::PathConstants path_{};
-  std::vector<glm::vec4> emissiveBodies_;  ///< of small_lamps.hpp; empty where paths do not end at records
+  std::vector<glm::vec4> emissiveBodies_;  ///< of small_lamps.hpp; empty where no light is kept by cells
   gl::ShaderFlags rays_;  ///< of the programs that trace
   const gl::Program *mark_, *claim_, *keep_, *list_, *store_;
   const gl::Program* paths_ = nullptr;  ///< only for rays

@@ -80,12 +80,10 @@ void RsmFrame::addStagePictures(std::vector<StagePicture>& pictures) const {
 std::string RsmFrame::summary() const {
   const RsmGather::Counts& c = gather_.counts();
   if (c.frames == 0) return "";
-  const auto perFrame = [&](std::uint64_t sum) { return (sum + c.frames / 2) / c.frames; };
   return fmt::format(
-      "gathered {} of {} pixels per frame ({} refused by interpolation), {:.1f} % saved; reflected light passes "
-      "through "
-      "walls\n",
-      perFrame(c.gathered), perFrame(c.pixels), perFrame(c.refused), 100.0 * c.saving());
+      "gathered {} of {} pixels per frame ({} refused by interpolation), {:.1f} % saved\n"
+      "reflected light passes through walls\n",
+      c.perFrame(c.gathered), c.perFrame(c.pixels), c.perFrame(c.refused), 100.0 * c.saving());
 }
 
 }  // namespace lucerna

@@ -55,6 +55,7 @@ class RsmGather {
   /// Pixels, summed over `frames` whose counts have arrived.
   struct Counts {
     std::uint64_t frames = 0, pixels = 0, gathered = 0, refused = 0;  ///< pixels: those that show a surface
+    std::uint64_t perFrame(std::uint64_t sum) const { return frames ? (sum + frames / 2) / frames : 0; }
     double saving() const { return pixels ? 1.0 - static_cast<double>(gathered) / static_cast<double>(pixels) : 0.0; }
   };
   static bool isNeeded(const SceneFeatures& features) { return ReflectiveShadowMap::isNeeded(features); }

@@ -1,10 +1,14 @@
-// Each fault that tests/mutants plants is still there to be planted: its text stands exactly once in its file.
+// Each fault that tests/mutants plants is still there to be planted: its text stands exactly once in its file. And the
+// tests that notice it still have their names.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
+#include <sstream>
 #include <string>
 
 namespace {
@@ -20,6 +24,24 @@ int countOf(const std::string& part, const std::string& text) {
   int count = 0;
   for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + part.size())) ++count;
   return count;
+}
+
+/// All sources of a test program.
+std::string sourcesOf(const fs::path& folder) {
+  std::string text;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
+    if (entry.path().extension() == ".cpp") text += textOf(entry.path());
+  return text;
+}
+
+/// What the declaration of a test that a part of a filter chooses has in it: of "Instance/Suite.Name*" "(Suite, Name".
+std::string declarationOf(std::string part) {
+  part = part.substr(part.find('/') + 1);
+  const std::size_t dot = part.find('.');
+  const std::string suite = part.substr(0, std::min(dot, part.find('*')));
+  if (dot == std::string::npos) return "(" + suite;
+  const std::string name = part.substr(dot + 1);
+  return "(" + suite + ", " + name.substr(0, name.find('*'));
 }
 
 TEST(MutantsList, EveryTextStandsOnceInItsFile) {
@@ -40,6 +62,26 @@ TEST(MutantsList, EveryTextStandsOnceInItsFile) {
     }
   }
   EXPECT_GE(faults, 100);
+}
+
+TEST(MutantsList, EveryFilterChoosesATest) {
+  const fs::path root = LUCERNA_SOURCE_DIR;
+  std::map<std::string, std::string> sources;
+  for (const char* list : {"tests/mutants/shaders.txt", "tests/mutants/engine.txt"}) {
+    std::ifstream lines(root / list);
+    for (std::string line; std::getline(lines, line);) {
+      if (!line.starts_with("? ")) continue;
+      std::istringstream words(line.substr(2));
+      std::string label, filter;
+      words >> label >> filter;
+      std::string& text = sources[label];
+      if (text.empty()) text = sourcesOf(root / "tests" / label);
+      std::istringstream parts(filter);
+      for (std::string part; std::getline(parts, part, ':');)
+        EXPECT_NE(text.find(declarationOf(part)), std::string::npos) << list << ": " << line;
+    }
+  }
+  EXPECT_EQ(sources.size(), 4u);
 }
 
 }  // namespace

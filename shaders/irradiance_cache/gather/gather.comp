@@ -162,10 +162,9 @@ Found gatherAt(vec3 position, vec3 normal, uint lane, uint seed) {
     }
     float c1 = height * inversesqrt(r2), c2 = meanCosine(here, -away * inversesqrt(r2));
 #if SHARED_WITH_RAYS
-    if (counts && standsForCell) {
-      add(found, overCell(here, away, normal), layerStart + node);
-      counts = false;
-    }
+    if (standsForCell) {
+      if (counts) add(found, overCell(here, away, normal), layerStart + node);
+    } else
 #endif
     if (counts && c1 > 0.0 && c2 > 0.0)
       add(found, ofPoint(here.flux, here.area, c1, c2, r2), layerStart + node);
@@ -233,7 +232,7 @@ void main() {
   CacheRecord record = records[index];
   if ((record.state & CACHE_ALONE) != 0u) return;  // what sees no surface lights none
 #if SHARED_WITH_RAYS
-  standsForCell = isNearSmallLamp(record.position - cache.rayOrigin, cell);
+  standsForCell = cell > 0.0 && isNearSmallLamp(record.position - cache.rayOrigin, cell);
 #endif
   uint seed = pcg4d(uvec4(record.cell)).x;
   Found found = gatherAt(record.position, record.normal, lane, pcg4d(uvec4(seed, lane, 0u, 0u)).x);
