@@ -323,7 +323,7 @@ TEST(GltfReader, PicturesWithPercentEncodedNamesAndInsideTheFileAreRead) {
                                     {{"uri", "data:image/png;base64," + base64(picture)}},
                                     {{"mimeType", "image/png"}, {"bufferView", gltf.view(picture)}}};
   for (const Json& image : images) {
-    gltf.root["images"] = {image};
+    gltf.root["images"] = Json::array({image});
     clearLoggedWarnings();
     const Scene scene = loadScene(folder.write("a.gltf", gltf.text()));
     EXPECT_TRUE(loggedWarnings().empty()) << image.dump();
@@ -372,7 +372,7 @@ TEST(GltfReader, PointsAndLinesAreNotDrawn) {
   expectCorners(gltf.load(), kTriangle);
   ASSERT_EQ(loggedWarnings().size(), 1u);
   EXPECT_TRUE(contains(loggedWarnings()[0], "4 primitives of points or lines are not drawn"));
-  gltf.root["meshes"][0]["primitives"] = {other};
+  gltf.root["meshes"][0]["primitives"] = Json::array({other});
   EXPECT_TRUE(contains(gltf.refusal(), "nothing to draw: points and lines alone"));
 }
 
