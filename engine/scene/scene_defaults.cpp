@@ -58,19 +58,22 @@ double areaOf(const Scene& scene, const Mesh& mesh) {
 
 double strongest(const glm::vec3& v) { return static_cast<double>(std::max({v.x, v.y, v.z})); }
 
-/// Whether emissive surfaces are a scene's light rather than its pilot lamps: a thousandth of its area. What shines as
-/// white paper at most (1, as glTF has it without KHR_materials_emissive_strength) must meet other surfaces too.
+/// Whether emissive surfaces are a scene's light rather than its pilot lamps: emission of a thousandth, averaged over
+/// its area, that meets other surfaces, as a lamp's in a room does. Or most of it emits, or a thousandth does and more
+/// strongly than white paper (1, as glTF has it without KHR_materials_emissive_strength).
 bool isLitByEmission(const Scene& scene) {
-  double all = 0.0, emissive = 0.0, most = 0.0;
+  double all = 0.0, emissive = 0.0, power = 0.0, most = 0.0;
   for (const Mesh& mesh : scene.meshes) {
     const Material& material = scene.materials[static_cast<std::size_t>(mesh.material)];
     const double area = areaOf(scene, mesh), emission = strongest(material.emission);
     all += area;
     most = std::max(most, emission);
+    power += area * emission;
     if (emission > 0.0)
       emissive += area * (material.emissionTexture >= 0 ? emission / strongest(material.emissionScale) : 1.0);
   }
-  return emissive > 1e-3 * all && (most > 1.0 || !glowsOutwards(scene));
+  if (!(power > 1e-3 * all)) return false;
+  return emissive > 0.5 * all || (emissive > 1e-3 * all && most > 1.0) || !glowsOutwards(scene);
 }
 
 }  // namespace

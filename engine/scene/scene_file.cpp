@@ -219,7 +219,7 @@ bool checkRadiance(const Image& picture, const std::filesystem::path& file, cons
   for (int y = 0; y < picture.height; ++y)
     for (int x = 0; x < picture.width; ++x) {
       const glm::vec3& texel = picture.at(x, y);
-      const auto isRadiance = [](float v) { return v >= 0.0f && static_cast<double>(v) <= kMostLight; };
+      const auto isRadiance = [](float v) { return v >= 0.0f && v <= static_cast<float>(kMostLight); };
       for (int c = 0; c < 3; ++c)
         if (!isRadiance(texel[c]) || !isRadiance(texel[c] * factor[c]))
           throwBadInput(

@@ -284,7 +284,7 @@ void warnOfOpacity(const Scene& scene) {
 void checkLights(const Scene& scene, const fs::path& file) {
   const auto check = [&](const std::string& what, const glm::vec3& light) {
     for (int c = 0; c < 3; ++c)
-      if (!(light[c] >= 0.0f && static_cast<double>(light[c]) <= kMostLight))
+      if (!(light[c] >= 0.0f && light[c] <= static_cast<float>(kMostLight)))
         throwBadInput("{}: {} is {} {} {}; expected numbers from 0 to {:g}", file.string(), what, light.x, light.y,
                       light.z, kMostLight);
   };

@@ -111,8 +111,9 @@ void readStl(Scene& scene, std::span<const std::uint8_t> content) {
                     held = content.size() >= kFacets ? (content.size() - kFacets) / kFacet : 0;
   const std::string_view text(reinterpret_cast<const char*>(content.data()), content.size());
   const std::size_t begin = std::min(text.find_first_not_of(" \t\r\n"), text.size());
-  const bool isText = lowerCase(text.substr(begin, 5)) == "solid" || text.starts_with("\xef\xbb\xbf") ||
-                      text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff");
+  const bool isUtf16 = text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff");
+  const bool isText = isUtf16 || ((lowerCase(text.substr(begin, 5)) == "solid" || text.starts_with("\xef\xbb\xbf")) &&
+                                  text.find('\0') == std::string_view::npos);
   const bool isBinary = count == held && kFacets + kFacet * held == content.size();
   if (!isText && !isBinary && (content.size() < kFacets || count > held))
     throwBadInput("{}: {} facets, its bytes hold {}: it is cut off, or no STL", scene.file.string(), count, held);

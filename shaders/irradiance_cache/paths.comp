@@ -351,8 +351,8 @@ vec3 followPath(Surface surface, uint triangle, PathNumbers numbers) {
     if (counts(scatterings)) {
       vec3 emission = emissionAt(surface.material, hit.triangle, hit.barycentrics);
 #if NEXT_EVENT
-      emission *=
-          powerHeuristic(pdf, pickDensity(hit.triangle) * hit.t * hit.t / -dot(surface.geometricNormal, ray.direction));
+      emission *= powerHeuristic(
+          pdf, lampDensity(hit.triangle, ray.origin, hit.t, -dot(surface.geometricNormal, ray.direction)));
 #endif
       radiance += throughput * emission;
     }

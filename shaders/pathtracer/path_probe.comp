@@ -3,6 +3,10 @@ layout(local_size_x = 64) in;
 #include "rays/random.glsl"
 #include "rays/bsdf.glsl"
 #include "pathtracer/fresnel.glsl"
+#if PROBE == 3
+#include "lib/spherical_triangle.glsl"
+uniform vec3 corner;
+#endif
 layout(std430, binding = 0) readonly restrict buffer Inputs { vec4 inputs[]; };
 layout(std430, binding = 1) writeonly restrict buffer Outputs { vec4 outputs[]; };
 
@@ -36,6 +40,10 @@ void main() {
   ggxReflect(a.xyz, r, a.w, pdf);
   first = vec4(r, pdf);
   second = vec4(cosineSample(normalize(a.xyz), b.xy), powerHeuristic(b.x, b.y));
+#elif PROBE == 3
+  // a, b: corners and two numbers. A direction to the triangle and its solid angle.
+  float angle = sphericalTriangle(a.xyz, b.xyz, corner);
+  first = vec4(sphericalTriangleSample(a.xyz, b.xyz, corner, angle, vec2(a.w, b.w)), angle);
 #endif
   outputs[2u * i] = first;
   outputs[2u * i + 1u] = second;

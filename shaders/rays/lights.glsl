@@ -4,6 +4,30 @@
 #include "lib/spot.glsl"
 #include "lib/tangent.glsl"
 #include "lib/round_light.glsl"
+#if EMISSION && NEXT_EVENT
+#include "lib/spherical_triangle.glsl"
+
+// Solid angle of a triangle from which directions to it are drawn; a: its first corner, relative to the point. 0: its
+// points are drawn by area. That serves as well where it is small, and where it is thin or the point is about in its
+// plane, single precision does not hold the angle.
+float nearAngle(vec3 a, vec3 ab, vec3 ac) {
+  vec3 b = a + ab, c = a + ac, n = cross(ab, ac);
+  float area = 0.5 * length(n), nearest2 = min(min(dot(a, a), dot(b, b)), dot(c, c)), volume = dot(a, n);
+  if (area < 0.05 * nearest2 || volume * volume < 1e-5 * area * area * area) return 0.0;
+  float angle = sphericalTriangle(normalize(a), normalize(b), normalize(c));
+  return angle > 1e-3 ? angle : 0.0;
+}
+
+// Density, 1/sr, with which next-event estimation samples a direction that hits the triangle `distance` away.
+float lampDensity(uint triangle, vec3 position, float distance, float cosine) {
+  uint first = triangle * TRIANGLE_WORDS;
+  vec3 a = uintBitsToFloat(triangleData[first].xyz), ab = uintBitsToFloat(triangleData[first + 1u].xyz) - a,
+       ac = uintBitsToFloat(triangleData[first + 2u].xyz) - a;
+  float angle = nearAngle(a - position, ab, ac);
+  float perArea = angle > 0.0 ? 0.5 * length(cross(ab, ac)) / angle : distance * distance / cosine;
+  return pickDensity(triangle) * perArea;
+}
+#endif
 
 struct LightSample {
   vec3 direction;  // unit, towards it
@@ -30,17 +54,24 @@ bool sampleOf(PathLight source, vec3 position, vec2 xi, uvec4 words, out LightSa
   bool reaches = false;
 #if EMISSION
   if (source.kind == PATH_LIGHT_TRIANGLE) {
+    vec3 a = source.a - position, n = cross(source.b, source.c);
     vec2 w = triangleSample(xi);
-    vec3 p = source.a + w.x * source.b + w.y * source.c;
-    vec3 away = p - position;
+    float angle = nearAngle(a, source.b, source.c);
+    if (angle > 0.0) {
+      vec3 d = sphericalTriangleSample(normalize(a), normalize(a + source.b), normalize(a + source.c), angle, xi);
+      vec3 beside = cross(a, d);  // by Cramer's rule
+      w = clamp(vec2(dot(beside, source.c), -dot(beside, source.b)) / dot(d, n), 0.0, 1.0);
+      w.y = min(w.y, 1.0 - w.x);
+    }
+    vec3 away = a + w.x * source.b + w.y * source.c;
     float distance2 = dot(away, away);
     light.direction = away * inversesqrt(distance2);
     float cosine = dot(light.direction, normalOf(source.p));
     reaches = abs(cosine) > 0.0 && distance2 > 0.0;
     if (reaches) {
-      light.pdf = pickDensity(source.p) * distance2 / abs(cosine);
+      light.pdf = pickDensity(source.p) * (angle > 0.0 ? 0.5 * length(n) / angle : distance2 / abs(cosine));
       light.value = emissionAt(source.q, source.p, w) / light.pdf;
-      light.end = p;
+      light.end = position + away;
     }
   }
 #endif

@@ -3,6 +3,7 @@
 // standard errors from its expectation.
 #include "pathtracer/light_visibility.hpp"
 #include "support/path_scenes.hpp"
+#include "support/rsm_reference.hpp"
 
 #include <gtest/gtest.h>
 
@@ -99,6 +100,30 @@ TEST_F(LightChoice, ASunBesideALampBringsLittleNoise) {
   std::printf("[ measured ] relative error %.5f\n", both.relativeError);
   EXPECT_LT(both.relativeError, 0.018);
   EXPECT_NEAR(both.mean.x / sun.mean.x, 1.0, 0.005);
+}
+
+// A lamp of 2 by 2 half a unit above a floor, against the form factor of its outline. By area, its samples' densities
+// grow with the squared distance over the cosine, with relative errors of 0.029, 0.048 and 0.065.
+TEST_F(LightChoice, ALampThatIsNearIsSampledBySolidAngle) {
+  SceneBuilder builder;
+  builder.plate(glm::dvec3(0.0), {0.0, 0.0, kSide}, {kSide, 0.0, 0.0}, builder.material(glm::vec3(0.5f)));
+  const int light = builder.material(glm::vec3(0.0f));
+  builder.materialAt(light).emission = glm::vec3(1.0f);
+  builder.plate({0.0, 0.5, 0.0}, {2.0, 0.0, 0.0}, {0.0, 0.0, 2.0}, light);
+  builder.scene().sun.reset();
+  for (const auto& [x, most] : {std::pair(0.0, 0.018), std::pair(0.9, 0.038), std::pair(1.3, 0.025)}) {
+    Camera camera = lookingAt({x, 0.4, 0.0}, {x, 0.0, 0.0}, 0.01);
+    camera.up = {0.0, 0.0, 1.0};
+    PathTracer::Settings settings = sized(16);
+    settings.bounces = 1;
+    const auto found = tracer(builder.scene(), camera, settings, 256).statistics();
+    const std::vector<glm::dvec3> corners = {{-1 - x, 0.5, -1}, {1 - x, 0.5, -1}, {1 - x, 0.5, 1}, {-1 - x, 0.5, 1}};
+    const double expected = 0.5 * std::abs(reference::polygonFormFactor(corners, {0, 1, 0}));
+    std::printf("[ measured ] x %.1f: %.5f of %.5f, relative error %.5f\n", x, found.mean.x, expected,
+                found.relativeError);
+    EXPECT_NEAR(found.mean.x, expected, 4.0 * found.meanError.x + 1e-4 * expected);
+    EXPECT_LT(found.relativeError, most);
+  }
 }
 
 TEST_F(LightChoice, TheMeanIsTheSumOfAllLights) {

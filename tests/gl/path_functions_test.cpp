@@ -109,7 +109,7 @@ double fresnel(double cosI, double eta) {  // amplitudes of both polarisations, 
 class PathFunctionsTest : public SharedProgramsTest {
  protected:
   using Pair = std::array<glm::vec4, 2>;
-  std::vector<Pair> probe(int which, const std::vector<Pair>& inputs) {
+  std::vector<Pair> probe(int which, const std::vector<Pair>& inputs, const glm::vec3& corner = {}) {
     const gl::Program& program = library().loadCompute(
         "path probe", "pathtracer/path_probe.comp",
         {{"PROBE", which}, {"GLOSSY", 1}, {"FRESNEL_AMPLITUDES", 0}, {"FRESNEL_SCHLICK", 0}, {"LINEAR_SEEDS", 0}});
@@ -120,6 +120,7 @@ class PathFunctionsTest : public SharedProgramsTest {
     {
       const gl::ComputePass pass("probe");
       program.use();
+      if (which == 3) program.set("corner", corner);
       pass.dispatch({static_cast<int>(inputs.size()), 1, 1}, {64, 1, 1});
     }
     return out.read<Pair>();
@@ -273,6 +274,63 @@ TEST_F(PathFunctionsTest, DrawnDirectionsHaveTheirDensity) {
     const double n = cells - 1, limit = n * std::pow(1.0 - 2.0 / (9.0 * n) + 3.72 * std::sqrt(2.0 / (9.0 * n)), 3.0);
     EXPECT_LT(chi2, limit) << "alpha " << c.alpha << ", " << cells << " cells";
     EXPECT_GT(cells, 50);
+  }
+}
+
+/// Angle between the planes through an edge: of b and c as seen along `a`.
+double dihedral(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+  const glm::dvec3 u = glm::cross(a, b), v = glm::cross(a, c);
+  return std::atan2(glm::length(glm::cross(u, v)), glm::dot(u, v));
+}
+
+/// By Girard's theorem.
+double sphericalExcess(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+  return dihedral(a, b, c) + dihedral(b, c, a) + dihedral(c, a, b) - kPi;
+}
+
+// Solid angle, mean direction and shares of parts. The integral of directions over a spherical polygon is half the sum
+// of its edges' angles times the normals of their planes (Lambert's formula as a vector).
+TEST_F(PathFunctionsTest, DirectionsToATriangleAreUniformInItsSolidAngle) {
+  const std::vector<std::array<glm::dvec3, 3>> triangles = {
+      {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
+      {{{1, 0.2, 0.3}, {0.1, 0.2, 1}, {-0.2, 1, 0.1}}},  // the other way round
+      {{{0.01, 0, 1}, {0.04, 0.01, 1}, {0.02, 0.03, 1}}},
+      {{{-0.9, -0.9, 0.02}, {1.1, -0.9, 0.02}, {0, 1.1, 0.02}}},  // seen from close to its plane
+      {{{-0.5, 0, 1}, {0.5, 0, 1}, {0.1, 0.01, 1}}}};
+  constexpr int kSide = 64;
+  for (const auto& [far1, far2, far3] : triangles) {
+    const glm::vec3 a(glm::normalize(far1)), b(glm::normalize(far2)), c(glm::normalize(far3));
+    const glm::dvec3 middle = glm::normalize(glm::dvec3(b) + glm::dvec3(c));
+    std::vector<Pair> inputs;
+    for (int i = 0; i < kSide * kSide; ++i)
+      inputs.push_back({glm::vec4(a, (static_cast<float>(i % kSide) + 0.5f) / kSide),
+                        glm::vec4(b, (static_cast<float>(i / kSide) + 0.5f) / kSide)});
+    const std::vector<Pair> results = probe(3, inputs, c);
+    const double angle = sphericalExcess(a, b, c);
+    const glm::dvec3 up = glm::cross(glm::dvec3(b - a), glm::dvec3(c - a));
+    const double side = glm::dot(up, glm::dvec3(a)) > 0.0 ? 1.0 : -1.0;
+    const auto inside = [&](const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& d) {
+      return side * glm::dot(glm::normalize(glm::cross(from, to)), d);
+    };
+    glm::dvec3 sum(0.0);
+    double ofPart = 0.0;
+    for (const Pair& r : results) {
+      const glm::dvec3 d(r[0]);
+      EXPECT_NEAR(r[0].w, angle, 1e-4 * angle);
+      EXPECT_NEAR(glm::length(d), 1.0, 1e-5);
+      EXPECT_GT(std::min({inside(a, b, d), inside(b, c, d), inside(c, a, d)}), -1e-5);
+      sum += d;
+      ofPart += inside(a, middle, d) < 0.0 ? 1.0 : 0.0;
+    }
+    glm::dvec3 expected(0.0);
+    for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
+      const glm::dvec3 normal = glm::cross(glm::dvec3(from), glm::dvec3(to));
+      expected += 0.5 * side / angle * std::atan2(glm::length(normal), glm::dot(glm::dvec3(from), glm::dvec3(to))) *
+                  glm::normalize(normal);
+    }
+    const double spread = std::sqrt(angle);
+    EXPECT_LT(glm::length(sum / (1.0 * kSide * kSide) - expected), 2e-3 * spread);
+    EXPECT_NEAR(ofPart / (kSide * kSide), sphericalExcess(a, b, middle) / angle, 0.01);
   }
 }
 

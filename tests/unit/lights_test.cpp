@@ -96,6 +96,30 @@ TEST(SceneLights, LampsReplaceTheDefaultSunButNoOther) {
   EXPECT_FALSE(both.defaultSun);
 }
 
+TEST(SceneLights, AFileThatItsEmissionLightsHasNoDefaultSun) {
+  const TempFolder folder;
+  folder.write("m.mtl",
+               "newmtl white\nKd 0.7 0.7 0.7\nnewmtl paper\nKd 0.7 0.7 0.7\nKe 1 1 1\nnewmtl lamp\nKe 600 600 600\n");
+  const auto hasSun = [&](const std::string& faces) {
+    std::string obj = "mtllib m.mtl\nv -2 0 -2\nv 2 0 -2\nv 2 0 2\nv -2 0 2\nv -2 4 -2\nv 2 4 -2\nv 2 4 2\nv -2 4 2\n";
+    for (const double y : {3.9, 4.1})  // 4 cm wide, below the lid of the room and above it
+      for (const auto& [x, z] : {std::pair(-0.02, -0.02), std::pair(0.02, -0.02), std::pair(0.02, 0.02)})
+        obj += fmt::format("v {} {} {}\n", x, y, z);
+    return loadScene(folder.write("m.obj", obj + faces)).sun.has_value();
+  };
+  const std::string room = "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+  EXPECT_TRUE(hasSun("usemtl white\n" + room));
+  EXPECT_FALSE(hasSun("usemtl white\n" + room + "usemtl lamp\nf 9 10 11\n"));  // a small lamp in a room
+  EXPECT_TRUE(hasSun("usemtl white\n" + room + "usemtl paper\nf 9 10 11\n"));  // as dim as a pilot lamp
+  EXPECT_TRUE(hasSun("usemtl white\nf 5 8 7 6\nusemtl lamp\nf 14 13 12\n"));  // on top of a lid: meets nothing
+  EXPECT_FALSE(hasSun("usemtl paper\nf 5 8 7 6\n"));  // nothing but emission
+}
+
+TEST(SceneLights, TheBrightestLightThatIsAllowedIsRead) {
+  const Scene scene = LightFolder().load(R"(, "sun": {"direction": [0,-1,0], "irradiance": [1e30, 0, 0]})");
+  EXPECT_EQ(scene.sun->irradiance.x, 1e30f);
+}
+
 TEST(SceneLights, ASceneMayHaveAnyNumberOfLamps) {
   const LightFolder folder;
   std::string spots, points;

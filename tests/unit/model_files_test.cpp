@@ -496,9 +496,9 @@ TEST(StlFile, ColoursOfFacetsAreDrawn) {
 
 TEST(StlFile, WhatIsCutOffIsSaid) {
   const TempFolder folder;
-  const std::string whole = binaryStl("", {0, 0});
-  for (const std::string& content :
-       {whole.substr(0, whole.size() - 1), std::string("solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n")})
+  const std::string whole = binaryStl("", {0, 0}), solid = binaryStl("solid", {0, 0});
+  for (const std::string& content : {whole.substr(0, whole.size() - 1), solid.substr(0, 120),
+                                     std::string("solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n")})
     EXPECT_TRUE(contains(badInputMessage([&] { loadScene(folder.write("m.stl", content)); }), "cut off"));
 }
 
