@@ -1,5 +1,5 @@
 // What paths of records have hit, kept while a scene moves (shared/irradiance_cache.h, CacheHit). Needs
-// irradiance_cache/common.glsl and lib/clamped_int.glsl.
+// lib/clamped_int.glsl.
 
 // Three floats of one exponent: 9 bits each, from 2^-24 to 65408, as GL_RGB9_E5.
 uint packColour(vec3 colour) {

@@ -1,6 +1,7 @@
 // Scenes that move, in every technique: a renderer that follows the scene draws what a new one would, whatever it has
 // drawn before; lights and surfaces are where the time says.
 #include "base/data.hpp"
+#include "gl/pass.hpp"
 #include "irradiance_cache/irradiance_cache_frame.hpp"
 #include "render/renderer.hpp"
 #include "render/techniques.hpp"
@@ -13,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <memory>
 #include <string_view>
@@ -279,6 +281,47 @@ TEST_F(KeptHitsGl, WaitWhereTheBudgetIsSpent) {
   const int frames = framesToRest(9.0);
   EXPECT_GT(frames, static_cast<int>(waiting / 200));
   EXPECT_LT(frames, 200);
+}
+
+struct KeptColour : test::SharedProgramsTest {};
+
+// Against the formula of EXT_texture_shared_exponent (OpenGL 4.3, 8.5.2) in double precision, for the whole range of
+// exponents, colours of one channel, and those that round up to the next exponent.
+TEST_F(KeptColour, IsPackedAsASharedExponentTexel) {
+  std::vector<glm::vec4> colours{{0, 0, 0, 0}, {65408, 1, 0, 0}, {1e6f, 1e6f, 3, 0}, {511.5f, 0.4f, 255, 0}};
+  for (int exponent = -30; exponent <= 17; ++exponent)
+    for (const float share : {1.0f, 1.37f, 1.997f, 1.9999f}) {
+      const float largest = std::ldexp(share, exponent);
+      colours.insert(colours.end(),
+                     {{largest, 0.31f * largest, 0.0f, 0.0f}, {0.01f * largest, 0.6f * largest, largest, 0.0f}});
+    }
+  const gl::Buffer in("colours", colours.size() * sizeof(glm::vec4), colours.data(), gl::Usage::staticDraw),
+      out("packed", colours.size() * sizeof(glm::vec4), nullptr, gl::Usage::dynamicRead);
+  const gl::Program& program = library().loadCompute("kept colour probe", "irradiance_cache/kept_probe.comp", {});
+  in.bindStorage(0);
+  out.bindStorage(1);
+  {
+    const gl::ComputePass pass("probe");
+    program.use();
+    pass.dispatch({static_cast<int>(colours.size()), 1, 1}, {64, 1, 1});
+  }
+  const std::vector<glm::vec4> found = out.read<glm::vec4>();
+  for (std::size_t i = 0; i < colours.size(); ++i) {
+    constexpr int kBias = 15, kBits = 9;
+    const glm::dvec3 c = glm::min(glm::dvec3(colours[i]), glm::dvec3(65408.0));
+    const double largest = std::max({c.x, c.y, c.z});
+    int exponent =
+        std::max(-kBias - 1, largest > 0.0 ? static_cast<int>(std::floor(std::log2(largest))) : -100) + 1 + kBias;
+    if (std::floor(largest / std::exp2(exponent - kBias - kBits) + 0.5) == 512.0) ++exponent;
+    const double step = std::exp2(exponent - kBias - kBits);
+    auto word = static_cast<std::uint32_t>(exponent) << 27;
+    for (int k = 0; k < 3; ++k) {
+      const double steps = std::floor(c[k] / step + 0.5);
+      EXPECT_EQ(static_cast<double>(found[i][k]), steps * step) << i;
+      word |= static_cast<std::uint32_t>(steps) << kBits * k;
+    }
+    EXPECT_EQ(std::bit_cast<std::uint32_t>(found[i].w), word) << i;
+  }
 }
 
 }  // namespace
