@@ -66,12 +66,11 @@ int runMerge(MergeOptions options) {
   if (!options.errorOutput.empty()) writeImage(options.errorOutput, film.standardError());
   if (!options.checkpoint.empty()) writeFileAtomically(options.checkpoint, bytesOf(film));
   if (!options.common.quiet)
-    fmt::print(
-        "{}: {}x{}, {} parts, samples {} to {}, mean radiance {:.6g} {:.6g} {:.6g}, standard error of a pixel {:.3g} "
-        "({:.3g} of the mean)\n",
-        options.output.empty() ? options.checkpoint : options.output, image.width, image.height, options.parts.size(),
-        film.first, film.first + film.mean.front().w - 1, statistics.mean.x, statistics.mean.y, statistics.mean.z,
-        statistics.standardError, statistics.relativeError);
+    fmt::print("{}: {}x{}, {} parts, samples {} to {}, mean radiance {:.6g} {:.6g} {:.6g}, {}\n",
+               options.output.empty() ? options.checkpoint : options.output, image.width, image.height,
+               options.parts.size(), film.first, film.first + film.mean.front().w - 1, statistics.mean.x,
+               statistics.mean.y, statistics.mean.z,
+               standardErrorText(statistics.standardError, statistics.relativeError));
   const auto finiteOrNull = [](double value) {
     return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
   };

@@ -234,11 +234,11 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   else if (!isOfAnother) std::filesystem::remove(checkpoint);
   if (!common.quiet)
     fmt::print(
-        "{}: {}x{}, path, {}, {:.6g} samples per pixel, mean radiance {:.6g} {:.6g} {:.6g}, standard error of a pixel "
-        "{:.3g} ({:.3g} of the mean), {:.3f} s on {}\n",
+        "{}: {}x{}, path, {}, {:.6g} samples per pixel, mean radiance {:.6g} {:.6g} {:.6g}, {}, {:.3f} s on {}\n",
         output.empty() ? checkpoint : output, image.width, image.height, picture.component, statistics.samples,
-        statistics.mean.x, statistics.mean.y, statistics.mean.z, statistics.standardError, statistics.relativeError,
-        seconds, context.capabilities().renderer);
+        statistics.mean.x, statistics.mean.y, statistics.mean.z,
+        standardErrorText(statistics.standardError, statistics.relativeError), seconds,
+        context.capabilities().renderer);
   if (denoiser && !common.quiet) {
     fmt::print("{}", statistics.samples < 2.0 ? "not denoised, as one sample has no halves" : "denoised");
     if (denoised.known)

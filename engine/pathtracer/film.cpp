@@ -4,6 +4,8 @@
 #include "base/files.hpp"
 #include "base/hash.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -90,6 +92,12 @@ FilmStatistics statisticsOf(std::span<const FilmPixel> pixels) {
   // Nothing found at all says nothing about the error.
   result.relativeError = mean > 0.0 ? result.standardError / mean : std::numeric_limits<double>::infinity();
   return result;
+}
+
+std::string standardErrorText(double standardError, double relativeError) {
+  if (!std::isfinite(standardError)) return "standard error not known, from one sample";
+  if (!std::isfinite(relativeError)) return "standard error not known, as no light was found";
+  return fmt::format("standard error of a pixel {:.3g} ({:.3g} of the mean)", standardError, relativeError);
 }
 
 glm::vec3 standardErrorOf(const FilmPixel& pixel) { return glm::vec3(glm::sqrt(meanVariance(pixel))); }

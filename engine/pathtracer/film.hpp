@@ -32,6 +32,8 @@ struct FilmStatistics {
   double relativeError = 0.0;  ///< that over the mean, channels averaged; infinite for a black picture
 };
 FilmStatistics statisticsOf(std::span<const FilmPixel> pixels);
+/// "standard error of a pixel 0.343 (0.455 of the mean)", or that it is not known.
+std::string standardErrorText(double standardError, double relativeError);
 /// Standard error of a pixel's mean; 0 below 2 samples.
 glm::vec3 standardErrorOf(const FilmPixel& pixel);
 

@@ -124,6 +124,13 @@ TEST(Film, PixelsThatFoundNothingAreNotExact) {
     EXPECT_EQ(statisticsOf(half).meanError, glm::dvec3(0.0));
   }
   EXPECT_EQ(statisticsOf(std::vector<FilmPixel>(16, pixel(1.0f, 4))).relativeError, 0.0);
+  const auto text = [](const std::vector<FilmPixel>& pixels) {
+    const FilmStatistics s = statisticsOf(pixels);
+    return standardErrorText(s.standardError, s.relativeError);
+  };
+  EXPECT_EQ(text(black), "standard error not known, as no light was found");
+  EXPECT_EQ(text(std::vector<FilmPixel>(16, pixel(1.0f, 1))), "standard error not known, from one sample");
+  EXPECT_EQ(text(std::vector<FilmPixel>(16, pixel(1.0f, 4))), "standard error of a pixel 0 (0 of the mean)");
 }
 
 }  // namespace
