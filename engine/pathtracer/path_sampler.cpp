@@ -1,14 +1,11 @@
 #include "pathtracer/path_sampler.hpp"
 
-#include "base/error.hpp"
 #include "base/hash.hpp"
 #include "base/named_values.hpp"
 #include "measure/light_kinds.hpp"
 #include "pathtracer/path_tracer.hpp"
 
 #include <fmt/format.h>
-
-#include <limits>
 
 namespace lucerna {
 
@@ -29,7 +26,7 @@ PathSampler::~PathSampler() = default;
 
 std::string PathSampler::versionOf(PixelFilter filter, bool allMaterials, int bounces) {
   std::string text =
-      fmt::format("path tracer 7, filter {}, {}", nameOf(filter), allMaterials ? "all materials" : "lambert");
+      fmt::format("path tracer 8, filter {}, {}", nameOf(filter), allMaterials ? "all materials" : "lambert");
   if (bounces > 0) text += fmt::format(", {} bounces", bounces);
   return text;
 }
@@ -38,10 +35,10 @@ measure::Sampler PathSampler::asSampler() {
   return [this](std::uint64_t first, std::uint32_t samples) { return sample(first, samples); };
 }
 
-// Each batch has its own film, so it does not matter which batches were computed before, or where.
+// Each batch has its own film, so it does not matter which batches were computed before, or where. It has a seed of its
+// own too: of one sequence, batches would lie between each other's points, and their differences would be of more than
+// the noise of their mean. So do transports and choices of lights.
 Image PathSampler::sample(std::uint64_t first, std::uint32_t samples) {
-  if (first + samples > std::numeric_limits<std::int32_t>::max())
-    throwMissingCapability("a reference is limited to {} paths per pixel", std::numeric_limits<std::int32_t>::max());
   if (!tracer_) {
     PathTracer::Settings settings;
     settings.size = size_;
@@ -50,18 +47,16 @@ Image PathSampler::sample(std::uint64_t first, std::uint32_t samples) {
     settings.filter = filter_;
     if (bounces_ > 0)
       settings.bounces = 1u + static_cast<std::uint32_t>(bounces_);  // the first scattering is direct light
-    // A different seed for each transport and each choice of lights: their noise must be independent.
-    const measure::LightKinds lights = measure::kindsOf(scene_);
-    Hash hash;
-    hash.add(std::uint64_t{0});
-    for (const int what : {static_cast<int>(transport_), bounces_, int{allMaterials_}, int{lights.sun},
-                           int{lights.lamps}, int{lights.surfaces}, int{lights.environment}})
-      hash.add(what);
-    settings.seed = static_cast<std::uint32_t>(hash.value() ^ hash.value() >> 32);
     tracer_ = std::make_unique<PathTracer>(context_, programs_, scene_, settings);
   }
+  const measure::LightKinds lights = measure::kindsOf(scene_);
+  Hash hash;
+  hash.add(first);
+  for (const int what : {static_cast<int>(transport_), bounces_, int{allMaterials_}, int{lights.sun}, int{lights.lamps},
+                         int{lights.surfaces}, int{lights.environment}})
+    hash.add(what);
   tracer_->setCamera(camera_);
-  if (first > 0) tracer_->setFirstSample(static_cast<std::uint32_t>(first));
+  tracer_->setSeed(static_cast<std::uint32_t>(hash.value() ^ hash.value() >> 32));
   tracer_->record(samples);
   return tracer_->mean();
 }

@@ -351,6 +351,11 @@ void PathTracer::setFirstSample(std::uint32_t first) {
   constants_.picture.w = static_cast<int>(first);
 }
 
+void PathTracer::setSeed(std::uint32_t seed) {
+  CHECK(done_ == 0 && tile_ == 0 && !tileBegun_, "{} samples are there", done_);
+  constants_.seed = seed;
+}
+
 std::uint64_t PathTracer::identity() const {
   shared::PathConstants constants = constants_;
   constants.tile = glm::ivec4(0);

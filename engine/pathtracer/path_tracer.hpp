@@ -90,6 +90,8 @@ class PathTracer {
   void setCamera(const Camera& camera);
   /// The number of the film's first sample, for computing parts of a picture's samples. The film must be empty.
   void setFirstSample(std::uint32_t first);
+  /// In place of the settings'. The film must be empty.
+  void setSeed(std::uint32_t seed);
   /// A film of another size; setCamera() must follow.
   void resize(glm::ivec2 size);
   /// One submission towards `samples` samples in every pixel, waited for. False once all have them.

@@ -3,6 +3,8 @@
 // random numbers. Its own noise can only make it leave the interval more often. LUCERNA_LONG_TESTS=1: 201 views of
 // three scenes, some five minutes of one core.
 #include "measure/error_interval.hpp"
+#include "measure/reference.hpp"
+#include "pathtracer/path_sampler.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "render/renderer.hpp"
 #include "scene/key_frames.hpp"
@@ -85,6 +87,28 @@ TEST_F(LiveReference, TheStatedIntervalHoldsTheTrueError) {
     if (!all) break;  // the others take minutes
   }
   for (const int count : held) EXPECT_GE(count, all ? static_cast<int>(std::ceil(0.95 * views)) : views - 1);
+}
+
+// A reference states the noise that it has: of sixteen, from other paths, the differences are what their standard
+// errors say. Batches of one sequence of points, over the area of pixels, said 2.8 times the squares with 16 paths.
+TEST_F(LiveReference, AReferenceStatesItsNoise) {
+  const Scene scene = loadScene(LUCERNA_SOURCE_DIR "/assets/cornell/cornell.json");
+  constexpr int kReferences = 16;
+  PathSampler sampler(context(), library(), scene, scene.cameras.front(), {24, 24}, PixelFilter::box, Transport::all);
+  for (const std::uint64_t samples : {16u, 64u}) {
+    measure::BatchMean found;
+    double stated = 0.0;
+    for (std::uint64_t k = 0; k < kReferences; ++k) {
+      const auto reference = measure::sampleReference(sampler.asSampler(), Transport::all, k * samples, {samples});
+      ASSERT_TRUE(reference);
+      found.add(reference->mean);
+      for (const glm::vec3& e : reference->standardError.pixels) stated += glm::dot(e, e) / kReferences;
+    }
+    double squares = 0.0;  // of a reference: those of the mean of all, times their number
+    for (const glm::vec3& e : found.standardError().pixels) squares += glm::dot(e, e) * kReferences;
+    fmt::print("[ measured ] {} paths: {:.3f} of the squared noise is stated\n", samples, stated / squares);
+    EXPECT_NEAR(stated / squares, 1.0, 0.1) << samples;
+  }
 }
 
 }  // namespace
