@@ -49,7 +49,7 @@ LiveReference::LiveReference(const gl::Context& context, gl::ProgramLibrary& pro
   seed.add(std::string_view("live"));
   seed.add(static_cast<std::uint64_t>(std::chrono::system_clock::now().time_since_epoch().count()));
   settings.seed = static_cast<std::uint32_t>(seed.value() ^ seed.value() >> 32);
-  settings.halves = denoised;
+  settings.halves = true;  // which know their noise
   tracer_ = std::make_unique<PathTracer>(context, programs, scene, settings);
   if (denoised) denoiser_.emplace(programs, *tracer_);
   meanTexture_ = gl::Texture("reference", gl::Format::rgba32f, size);

@@ -25,7 +25,8 @@ class LiveReference : public SharedProgramsTest {
     PathTracer::Settings settings;
     settings.size = kSize;
     settings.diffuseOnly = true;
-    settings.filter = PixelFilter::centre;
+    settings.filter = PixelFilter::box;
+    settings.halves = true;
     settings.seed = seed;
     return PathTracer(context(), library(), scene, settings);
   }
@@ -87,6 +88,29 @@ TEST_F(LiveReference, TheStatedIntervalHoldsTheTrueError) {
     if (!all) break;  // the others take minutes
   }
   for (const int count : held) EXPECT_GE(count, all ? static_cast<int>(std::ceil(0.95 * views)) : views - 1);
+}
+
+// So does the window's: of sixteen films of two halves, the pictures differ by what their standard errors say. Of
+// independent samples the squares would be 2.5 times as large.
+TEST_F(LiveReference, HalvesStateTheNoiseOfTheirPicture) {
+  const Scene scene = loadScene(LUCERNA_SOURCE_DIR "/assets/cornell/cornell.json");
+  constexpr std::uint32_t kFilms = 16;
+  PathTracer tracer = sampler(scene, 0);
+  for (const std::uint32_t samples : {16u, 64u}) {
+    measure::BatchMean found;
+    double stated = 0.0;
+    for (std::uint32_t k = 0; k < kFilms; ++k) {
+      tracer.setCamera(scene.cameras.front());
+      tracer.setSeed(k);
+      tracer.record(samples);
+      found.add(tracer.mean());
+      for (const glm::vec3& e : tracer.standardError().pixels) stated += glm::dot(e, e) / kFilms;
+    }
+    double squares = 0.0;
+    for (const glm::vec3& e : found.standardError().pixels) squares += glm::dot(e, e) * kFilms;
+    fmt::print("[ measured ] {} samples: {:.3f} of the squared noise is stated\n", samples, stated / squares);
+    EXPECT_NEAR(stated / squares, 1.0, 0.15) << samples;
+  }
 }
 
 // A reference states the noise that it has: of sixteen, from other paths, the differences are what their standard
