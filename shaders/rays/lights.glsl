@@ -18,13 +18,13 @@ float nearAngle(vec3 a, vec3 ab, vec3 ac) {
   return angle > 1e-3 ? angle : 0.0;
 }
 
-// Density, 1/sr, with which next-event estimation samples a direction that hits the triangle `distance` away.
-float lampDensity(uint triangle, vec3 position, float distance, float cosine) {
+// Density, 1/sr, with which next-event estimation samples a direction that hits the triangle at that distance.
+float lampDensity(uint triangle, vec3 position, float t, float cosine) {
   uint first = triangle * TRIANGLE_WORDS;
   vec3 a = uintBitsToFloat(triangleData[first].xyz), ab = uintBitsToFloat(triangleData[first + 1u].xyz) - a,
        ac = uintBitsToFloat(triangleData[first + 2u].xyz) - a;
   float angle = nearAngle(a - position, ab, ac);
-  float perArea = angle > 0.0 ? 0.5 * length(cross(ab, ac)) / angle : distance * distance / cosine;
+  float perArea = angle > 0.0 ? 0.5 * length(cross(ab, ac)) / angle : t * t / cosine;
   return pickDensity(triangle) * perArea;
 }
 #endif
