@@ -117,6 +117,10 @@ void PathOptions::refuseIfGiven(const std::string& technique) const {
         technique);
 }
 
+bool isDenoised(const PathOptions& path, const RenderSettings& shared) {
+  return path.denoise || shared.of<PathSettings>().denoise;
+}
+
 PathTracer::Settings tracerSettings(const PictureOptions& picture, const PathOptions& path,
                                     const RenderSettings& shared) {
   for (const std::string& deviation : picture.deviations)
@@ -129,7 +133,7 @@ PathTracer::Settings tracerSettings(const PictureOptions& picture, const PathOpt
   settings.bounces = path.bounces.value_or(shared.of<PathSettings>().scatterings);
   settings.seed = path.seed.value_or(shared.of<PathSettings>().seed);
   settings.deviations = shared.of<PathSettings>().deviations;
-  settings.halves = path.denoise || shared.of<PathSettings>().denoise;
+  settings.halves = isDenoised(path, shared) || path.error;  // two halves know the picture's error
   return settings;
 }
 
@@ -141,7 +145,7 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   const RenderSettings shared = rest.parse();
   const PathTracer::Settings settings = tracerSettings(picture, path, shared);
   const std::optional<SampleRange> part = sampleRange(path);
-  if (part && settings.halves)
+  if (part && isDenoised(path, shared))
     throwBadInput("--denoise: cannot be combined with --samples and --part, whose parts become one picture later");
   if (output.empty() && !part) throwBadInput("--output is missing: the file for the picture");
   if (!output.empty() && !isWritableImageName(output))
@@ -158,7 +162,7 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   PathTracer tracer(context, programs, scene, settings);
   tracer.setCamera(camera);
   std::optional<Denoiser> denoiser;
-  if (settings.halves) denoiser.emplace(programs, tracer);
+  if (isDenoised(path, shared)) denoiser.emplace(programs, tracer);
   // Without --checkpoint the film is stored next to the picture, and only if the work was stopped.
   const std::string checkpoint = path.checkpoint.empty() ? output + ".film" : path.checkpoint;
   bool isOfAnother = false;  // OUT.film, of another picture that had the same name

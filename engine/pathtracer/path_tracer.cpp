@@ -617,8 +617,10 @@ std::vector<PathTracer::Pixel> PathTracer::readFilm() const {
                  a.samples + b.samples};
     ofIndependent += glm::dot(glm::dvec3(pixels[i].m2), glm::dvec3(1.0)) / ((n + m) * (n + m - 1.0));
   }
-  // Samples of a half are spread more evenly than independent ones; by how much, the halves' difference says.
-  if (found > 0.0 && ofIndependent > 0.0)
+  // Samples of a half are spread more evenly than independent ones; by how much, the halves' difference says, if there
+  // are pixels enough to know it within a tenth.
+  constexpr std::size_t kEnough = 256;
+  if (pixels.size() >= kEnough && found > 0.0 && ofIndependent > 0.0)
     for (Pixel& pixel : pixels) pixel.m2 *= static_cast<float>(found / ofIndependent);
   return pixels;
 }

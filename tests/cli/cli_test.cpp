@@ -516,6 +516,29 @@ TEST_F(CommandLine, PathTracingSaysHowGoodThePictureIs) {
   }
 }
 
+// By --error it is a film of two halves, which know how evenly their points are spread: two pictures of other seeds
+// differ by what each says, and not by the half of it.
+TEST_F(CommandLine, PathTracingStopsAtTheErrorThatThePictureHas) {
+  const std::string common =
+      "render '" LUCERNA_SOURCE_DIR "/assets/cornell/cornell.json' --technique path --size 32x32 --error 0.08 ";
+  std::array<lucerna::Image, 2> pictures;
+  double said = 0.0;
+  for (std::size_t k = 0; k < pictures.size(); ++k) {
+    ASSERT_EQ(RUN_LUCERNA(common + "--seed " + std::to_string(k) + " -o " + path("x.pfm") + " --json " + path("x.json"))
+                  .exitCode,
+              0);
+    said += json("x.json").at("standard_error").get<double>() / pictures.size();
+    EXPECT_LE(json("x.json").at("relative_error"), 0.08);
+    pictures[k] = lucerna::readImage(path("x.pfm"));
+  }
+  double squares = 0.0;
+  for (std::size_t i = 0; i < pictures[0].pixels.size(); ++i) {
+    const glm::dvec3 d = glm::dvec3(pictures[0].pixels[i]) - glm::dvec3(pictures[1].pixels[i]);
+    squares += glm::dot(d, d) / (6.0 * static_cast<double>(pictures[0].pixels.size()));
+  }
+  EXPECT_NEAR(std::sqrt(squares) / said, 1.0, 0.2);
+}
+
 TEST_F(CommandLine, PathTracingAsPublishedNamesItsDeviations) {
   const std::string common = "render " + scene() + " --technique path --size 16x12 --spp 4 ";
   ASSERT_EQ(
