@@ -74,6 +74,10 @@ std::optional<SampleRange> sampleRange(const PathOptions& path) {
   return SampleRange{static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last)};
 }
 
+bool isDenoised(const PathOptions& path, const RenderSettings& shared) {
+  return path.denoise || shared.of<PathSettings>().denoise;
+}
+
 void resumeFrom(PathTracer& tracer, const std::string& checkpoint, const std::optional<SampleRange>& part) {
   const std::vector<std::uint8_t> bytes = readFileBytes(checkpoint);
   const std::uint32_t first = filmOf(bytes, checkpoint).first, wanted = part ? part->first : 0;
@@ -115,10 +119,6 @@ void PathOptions::refuseIfGiven(const std::string& technique) const {
         "--technique {}: --spp, --samples, --part, --seconds, --error, --bounces, --seed, --denoise and --checkpoint "
         "belong to --technique path",
         technique);
-}
-
-bool isDenoised(const PathOptions& path, const RenderSettings& shared) {
-  return path.denoise || shared.of<PathSettings>().denoise;
 }
 
 PathTracer::Settings tracerSettings(const PictureOptions& picture, const PathOptions& path,

@@ -51,8 +51,8 @@ class PathTracer {
     RayScene::Settings rays;
     PathDeviations deviations;
     /// Two independent pictures of half the samples each, as the denoiser needs them (denoiser.hpp); mean() is of both.
-    /// Other random numbers than those of one picture, and a film of twice the size. Standard errors are those of the
-    /// picture, by the halves' difference; without halves they are those of independent samples, which is too much.
+    /// Other random numbers than those of one picture, and a film of twice the size. With 256 pixels or more, standard
+    /// errors are scaled to the halves' difference; else they are those of independent samples, which is too much.
     bool halves = false;
     /// The only pixel of the picture to trace, counted from the lower left; its light contributions are kept for
     /// takeInspected().

@@ -58,9 +58,10 @@ double areaOf(const Scene& scene, const Mesh& mesh) {
 
 double strongest(const glm::vec3& v) { return static_cast<double>(std::max({v.x, v.y, v.z})); }
 
-/// Whether emissive surfaces are a scene's light rather than its pilot lamps: emission of a thousandth, averaged over
-/// its area, that meets other surfaces, as a lamp's in a room does. Or most of it emits, or a thousandth does and more
-/// strongly than white paper (1, as glTF has it without KHR_materials_emissive_strength).
+/// Whether emissive surfaces are a scene's light rather than its pilot lamps. Their emission, averaged over all area,
+/// is above a thousandth, and meets other surfaces, as that of a lamp in a room does. What shines outwards counts if
+/// most of the area emits, or a thousandth of it and something more than white paper (1, as glTF has it without
+/// KHR_materials_emissive_strength).
 bool isLitByEmission(const Scene& scene) {
   double all = 0.0, emissive = 0.0, power = 0.0, most = 0.0;
   for (const Mesh& mesh : scene.meshes) {

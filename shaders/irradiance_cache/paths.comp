@@ -352,7 +352,7 @@ vec3 followPath(Surface surface, uint triangle, PathNumbers numbers) {
       vec3 emission = emissionAt(surface.material, hit.triangle, hit.barycentrics);
 #if NEXT_EVENT
       emission *= powerHeuristic(
-          pdf, lampDensity(hit.triangle, ray.origin, hit.t, -dot(surface.geometricNormal, ray.direction)));
+          pdf, lampDensityOfHit(hit.triangle, ray.origin, hit.t, -dot(surface.geometricNormal, ray.direction)));
 #endif
       radiance += throughput * emission;
     }

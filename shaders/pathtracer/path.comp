@@ -76,8 +76,8 @@ void addEmission(inout Path path, Hit hit, Surface surface, PathNumbers numbers)
   vec3 emission = emissionAt(surface.material, hit.triangle, hit.barycentrics);
 #if NEXT_EVENT
   if (path.pdf > 0.0) {
-    float pdf = lampDensity(hit.triangle, surface.position - path.travelled * path.direction, path.travelled,
-                            -dot(surface.geometricNormal, path.direction));
+    float pdf = lampDensityOfHit(hit.triangle, surface.position - path.travelled * path.direction, path.travelled,
+                                 -dot(surface.geometricNormal, path.direction));
     emission *= powerHeuristic(path.pdf, pdf);
   }
 #endif

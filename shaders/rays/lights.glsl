@@ -18,14 +18,17 @@ float nearAngle(vec3 a, vec3 ab, vec3 ac) {
   return angle > 1e-3 ? angle : 0.0;
 }
 
-// Density, 1/sr, with which next-event estimation samples a direction that hits the triangle at that distance.
-float lampDensity(uint triangle, vec3 position, float t, float cosine) {
+// Density, 1/sr, with which next-event estimation draws a direction to that triangle; angle: by nearAngle.
+float lampDensity(uint triangle, float area, float angle, float distance2, float cosine) {
+  return pickDensity(triangle) * (angle > 0.0 ? area / angle : distance2 / cosine);
+}
+
+// The same, of a direction in which a ray from `position` has hit it at the distance t.
+float lampDensityOfHit(uint triangle, vec3 position, float t, float cosine) {
   uint first = triangle * TRIANGLE_WORDS;
   vec3 a = uintBitsToFloat(triangleData[first].xyz), ab = uintBitsToFloat(triangleData[first + 1u].xyz) - a,
        ac = uintBitsToFloat(triangleData[first + 2u].xyz) - a;
-  float angle = nearAngle(a - position, ab, ac);
-  float perArea = angle > 0.0 ? 0.5 * length(cross(ab, ac)) / angle : t * t / cosine;
-  return pickDensity(triangle) * perArea;
+  return lampDensity(triangle, 0.5 * length(cross(ab, ac)), nearAngle(a - position, ab, ac), t * t, cosine);
 }
 #endif
 
@@ -59,8 +62,8 @@ bool sampleOf(PathLight source, vec3 position, vec2 xi, uvec4 words, out LightSa
     float angle = nearAngle(a, source.b, source.c);
     if (angle > 0.0) {
       vec3 d = sphericalTriangleSample(normalize(a), normalize(a + source.b), normalize(a + source.c), angle, xi);
-      vec3 beside = cross(a, d);  // by Cramer's rule
-      w = clamp(vec2(dot(beside, source.c), -dot(beside, source.b)) / dot(d, n), 0.0, 1.0);
+      vec3 across = cross(a, d);  // by Cramer's rule
+      w = clamp(vec2(dot(across, source.c), -dot(across, source.b)) / dot(d, n), 0.0, 1.0);
       w.y = min(w.y, 1.0 - w.x);
     }
     vec3 away = a + w.x * source.b + w.y * source.c;
@@ -69,7 +72,7 @@ bool sampleOf(PathLight source, vec3 position, vec2 xi, uvec4 words, out LightSa
     float cosine = dot(light.direction, normalOf(source.p));
     reaches = abs(cosine) > 0.0 && distance2 > 0.0;
     if (reaches) {
-      light.pdf = pickDensity(source.p) * (angle > 0.0 ? 0.5 * length(n) / angle : distance2 / abs(cosine));
+      light.pdf = lampDensity(source.p, 0.5 * length(n), angle, distance2, abs(cosine));
       light.value = emissionAt(source.q, source.p, w) / light.pdf;
       light.end = position + away;
     }
