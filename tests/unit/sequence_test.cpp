@@ -26,8 +26,8 @@ Image bar(double moment) {
 class Sequence : public testing::Test {
  protected:
   Image noisy(Image image, float sigma) {
-    std::normal_distribution<float> normal(0.0f, sigma);
-    for (glm::vec3& p : image.pixels) p += glm::vec3(normal(random_), normal(random_), normal(random_));
+    std::normal_distribution<float> normal;
+    for (glm::vec3& p : image.pixels) p += sigma * glm::vec3(normal(random_), normal(random_), normal(random_));
     return image;
   }
   std::vector<Reference> references(float sigma = 0.0f) {
