@@ -232,13 +232,25 @@ Row draw(const DynamicOptions& options, const gl::Context& context, gl::ProgramL
   const RenderSettings& settings = asked.settings;
   poseAt(scene, moments.front().seconds);
   auto renderer = std::make_unique<Renderer>(context, programs, scene, settings);
+  const auto follow = [&](const Moment& moment) {
+    if (!renderer->follow(context, programs, scene, poseAt(scene, moment.seconds)))
+      renderer = std::make_unique<Renderer>(context, programs, scene, settings);
+  };
   renderer->renderToTheEnd(moments.front().camera);  // drivers finish shaders on first use
+  if (options.live) {
+    // In the window a view comes to rest, frame by frame, before it moves. Here it moves away and back first.
+    constexpr int kFramesToRest = 1000;
+    follow(moments[moments.size() > 1 ? 1 : 0]);
+    renderer->render(moments[moments.size() > 1 ? 1 : 0].camera);
+    follow(moments.front());
+    for (int frame = 0; frame < kFramesToRest && !renderer->isSettled() && !interrupted(); ++frame)
+      renderer->render(moments.front().camera);
+  }
   for (std::size_t k = 0; k < moments.size(); ++k) {
     if (interrupted()) return row;
     const Moment& moment = moments[k - std::min(k, static_cast<std::size_t>(options.late))];
     const auto start = Clock::now();
-    if (!renderer->follow(context, programs, scene, poseAt(scene, moment.seconds)))
-      renderer = std::make_unique<Renderer>(context, programs, scene, settings);
+    follow(moment);
     if (options.live) renderer->render(moment.camera);
     else renderer->renderToTheEnd(moment.camera);
     gl::finish();

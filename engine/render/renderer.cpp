@@ -255,15 +255,14 @@ void Renderer::warnOfWhatIsLeftOut(const TechniqueEntry& technique) {
                      geometry_ ? ", they look matt but for lamps' highlights" : ", but lamps' highlights",
                      fmt::join(reflecting, ", "),
                      techniquesThat([](const TechniqueEntry& t) { return t.drawsReflections; })));
-  // Reflected rays find surfaces behind glass, but not what passes it from a point, a spot or the sun.
+  // Reflected rays find surfaces behind glass, and light those within it straight through.
   const std::vector<std::string> casters = namesOfDrawn(gpuScene_->scene(), [](const Material& material) {
     return material.bsdf == Bsdf::dielectric || material.bsdf == Bsdf::mirror;
   });
-  if (reflects && features_.anyLight() && !casters.empty())
-    warn(
-        fmt::format("sun and lamps shine neither through glass and water nor by way of mirrors (caustics): {} ({} "
-                    "draws that light)",
-                    fmt::join(casters, ", "), draws));
+  if (reflects && (features_.anyLight() || features_.emission) && !casters.empty())
+    warn(fmt::format(
+        "caustics are left out, the light that glass and water bend and mirrors throw back: {} ({} draws it)",
+        fmt::join(casters, ", "), draws));
   const std::vector<std::string> bodies = namesOfDrawn(gpuScene_->scene(), [](const Material& material) {
     return material.bsdf == Bsdf::dielectric && material.interior >= 0;
   });

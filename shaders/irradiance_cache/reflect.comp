@@ -26,7 +26,8 @@ layout(binding = 0) writeonly restrict uniform image2D reflected;
 uniform ivec2 firstPixel;
 uniform int rays;         // per sample of a pixel
 uniform int pixelSample;  // its number: each draws other random numbers
-#if CLOUDS
+#define SHINING (NEXT_EVENT && (EMISSION || ENVIRONMENT_PICTURE))  // lights that rays find too
+#if CLOUDS || SHINING
 #include "rays/lights.glsl"
 #define lamps lights
 #elif LAMPS
@@ -36,12 +37,36 @@ layout(std430, binding = 4) readonly restrict buffer LampBlock { PathLight lamps
 const float kRays = 0.25, kNoRays = 0.5;  // alpha up to which rays alone show a coat, and from which none do
 const uint kMostSurfaces = 12u + 12u * uint(BODIES) + 24u * uint(CLOUDS);  // and collisions, along a ray
 const uint kMostBounces = 4u;             // beyond records
+const uint kMostBoundaries = 4u;          // between a surface in glass or water and a lamp
 const uint kPurposeBody = 5u, kPurposeCloud = 6u, kPurposeCloudWay = 7u, kPurposeCloudLight = 8u;
 
 bool counts(uint scatterings) { return scatterings >= tracer.minScatterings && scatterings <= tracer.maxScatterings; }
 
+// Share of a lamp's light that arrives. Glass and water between, within which the ray has come to the surface, let it
+// through without bending it: for a level floor under level water that is exact, elsewhere it leaves out caustics.
+float shareOfLamp(Ray ray, uint triangle, bool isWithin) {
+  if (!isWithin) return anyHitToLamp(ray, triangle) ? 0.0 : 1.0;
+  float share = 1.0;
+  vec3 direction = normalize(ray.direction);
+  for (uint k = 0u; k < kMostBoundaries; ++k) {
+    if (!anyHitToLamp(ray, triangle)) return share;
+    Hit hit = closestHit(ray, triangle);
+    if (hit.triangle == kNoHit) return share;
+    Surface surface = surfaceAt(hit.triangle, hit.barycentrics, direction);
+    PathMaterial material = materials[surface.material];
+    if (material.kind != PATH_DIELECTRIC) return 0.0;
+    float cosT;
+    share *= 1.0 - fresnelDielectric(min(-dot(surface.normal, direction), 1.0), 1.0 / material.ior, cosT);
+    triangle = hit.triangle;
+    vec3 from = offsetRay(surface.position, -surface.geometricNormal, surface.magnitude);
+    if (ray.tMax == 1.0) ray.direction = ray.origin + ray.direction - from;
+    ray.origin = from;
+  }
+  return 0.0;
+}
+
 // Irradiance from sun, spots and omnidirectional lamps.
-vec3 lampIrradiance(Surface surface, uint triangle) {
+vec3 lampIrradiance(Surface surface, uint triangle, bool isWithin) {
   vec3 sum = vec3(0.0);
 #if LAMPS
   ShadowStart start = shadowStart(surface, triangle);
@@ -56,11 +81,28 @@ vec3 lampIrradiance(Surface surface, uint triangle) {
     float cosine = dot(direction, surface.normal);
     if (!(cosine > 0.0 && dot(direction, start.normal) > 0.0) || all(equal(arriving, vec3(0.0)))) continue;
     Ray ray = infinite ? Ray(start.origin, 0.0, direction, 3e38) : Ray(start.origin, 0.0, lamp.a - start.origin, 1.0);
-    if (!anyHitToLamp(ray, start.skip)) sum += cosine * arriving;
+    sum += cosine * arriving * shareOfLamp(ray, start.skip, isWithin);
   }
 #endif
   return sum;
 }
+
+#if SHINING
+// Irradiance from an emissive surface or the environment's picture: the part of next-event estimation, where a
+// cosine-weighted ray finds the other part.
+vec3 shiningIrradiance(Surface surface, uint triangle, bool isWithin, PathNumbers numbers, uint event) {
+  LightSample light;
+  if (!sampleLight(surface.position, randomPair(numbers, event, kPurposeLight),
+                   randomWords(numbers, event, kPurposePick), light) || light.pdf == 0.0)
+    return vec3(0.0);
+  float cosine = dot(light.direction, surface.normal);
+  if (!(cosine > 0.0 && dot(light.direction, surface.geometricNormal) > 0.0)) return vec3(0.0);
+  vec3 start = offsetRay(surface.position, surface.geometricNormal, surface.magnitude);
+  Ray ray = light.infinite ? Ray(start, 0.0, light.direction, 3e38) : Ray(start, 0.0, light.end - start, 1.0);
+  float share = shareOfLamp(ray, triangle, isWithin);
+  return light.value * (share * cosine * (isWithin ? 1.0 : powerHeuristic(light.pdf, cosine / kPi)));
+}
+#endif
 
 #if CLOUDS
 // Radiance that a point in a cloud scatters of one light.
@@ -161,18 +203,19 @@ Entry entry;
 void enterThrough(Surface surface, uint triangle) {
   entry.surface = surface;
   entry.light = (cachedIrradiance(surface.position + cache.rayOrigin, surface.normal, entry.isKnown) +
-                 lampIrradiance(surface, triangle)) / kPi;
+                 lampIrradiance(surface, triangle, false)) / kPi;
 }
 #endif
 
-// Radiance along a ray that has left a surface of the pixel; scatterings: so far.
-vec3 radianceAlong(Ray ray, uint triangle, vec3 throughput, uint scatterings, PathNumbers numbers, bool isFromCloud) {
+// Radiance along a ray that has left a surface of the pixel; scatterings: so far; isWithin: in glass or water without a
+// medium.
+vec3 radianceAlong(Ray ray, uint triangle, vec3 throughput, uint scatterings, PathNumbers numbers, bool isWithin,
+                   bool isFromCloud) {
   vec3 sum = vec3(0.0);
   bool last = false;  // the ray only collects what shines at its end
   uint bounces = 0u;
-#if CLOUDS
-  bool isSampled = isFromCloud;  // what shines at its end is found by lightIn
-#endif
+  float pdf = 0.0;  // of the ray's direction, where shiningIrradiance has looked for what it may find
+  bool isSampled = isFromCloud;  // what shines at its end is found by next-event estimation, or is a caustic
   for (uint k = 0u; k < kMostSurfaces; ++k) {
     Hit hit = closestHit(ray, triangle);
 #if CLOUDS
@@ -186,6 +229,7 @@ vec3 radianceAlong(Ray ray, uint triangle, vec3 throughput, uint scatterings, Pa
       ray = Ray(place, 0.0, isotropicDirection(unitFloat(randomWords(numbers, 1u + k, kPurposeCloudWay).xy)), 3e38);
       triangle = kNoHit;
       isSampled = NEXT_EVENT != 0;
+      pdf = 0.0;
       continue;
     }
 #endif
@@ -212,6 +256,7 @@ vec3 radianceAlong(Ray ray, uint triangle, vec3 throughput, uint scatterings, Pa
           ray = Ray(offsetRay(entry.surface.position, entry.surface.geometricNormal, entry.surface.magnitude), 0.0,
                     outwards, 3e38);
           triangle = kNoHit;
+          pdf = 0.0;
           continue;
         }
         throughput *= through / (1.0 - share);
@@ -222,28 +267,44 @@ vec3 radianceAlong(Ray ray, uint triangle, vec3 throughput, uint scatterings, Pa
     // What is at its end
     if (hit.triangle == kNoHit) {
 #if ENVIRONMENT
-      if (counts(scatterings)) sum += throughput * environmentRadiance(ray.direction);
+      if (counts(scatterings)) {
+        vec3 sky = environmentRadiance(ray.direction);
+#if SHINING && ENVIRONMENT_PICTURE
+        if (pdf > 0.0) sky *= powerHeuristic(pdf, tracer.environmentPick * environmentPdf(ray.direction));
+        if (isSampled) sky = vec3(0.0);
+#endif
+        sum += throughput * sky;
+      }
 #endif
       break;
     }
     Surface surface = surfaceAt(hit.triangle, hit.barycentrics, ray.direction);
     triangle = hit.triangle;
-#if EMISSION && CLOUDS
-    if (counts(scatterings) && !isSampled) sum += throughput * emissionAt(surface.material, triangle, hit.barycentrics);
-#elif EMISSION
-    if (counts(scatterings)) sum += throughput * emissionAt(surface.material, triangle, hit.barycentrics);
+#if EMISSION
+    if (counts(scatterings)) {
+      vec3 emission = emissionAt(surface.material, triangle, hit.barycentrics);
+#if SHINING
+      float cosine = -dot(surface.geometricNormal, ray.direction);
+      if (pdf > 0.0) emission *= powerHeuristic(pdf, lampDensityOfHit(triangle, ray.origin, hit.t, cosine));
+#endif
+      if (isSampled) emission = vec3(0.0);
+      sum += throughput * emission;
+    }
 #endif
     if (last) break;
+    pdf = 0.0;
 #if CLOUDS
     isSampled = isSampled && bodies[surface.material].kind == BODY_CLOUD;
 #endif
+
+    // On from there
     float side;
     vec3 direction = ray.direction;
     if (!passes(surface, false, throughput, direction, side)) {
       ++scatterings;
       if (scatterings > tracer.maxScatterings) break;
       throughput *= wholeAlbedoAt(surface);
-      if (counts(scatterings)) sum += throughput / kPi * lampIrradiance(surface, triangle);
+      if (counts(scatterings)) sum += throughput / kPi * lampIrradiance(surface, triangle, isWithin);
       bool found;
       vec3 kept = cachedIrradiance(surface.position + cache.rayOrigin, surface.normal, found);
       if (found) {
@@ -253,11 +314,25 @@ vec3 radianceAlong(Ray ray, uint triangle, vec3 throughput, uint scatterings, Pa
       }
       if (++bounces > kMostBounces) break;
       direction = cosineSample(surface.normal, randomPair(numbers, 1u + k, kPurposeScatter));
+#if SHINING
+#if CLOUDS
+      if (cloudAround < 0)  // a cloud would dim it
+#endif
+      {
+        if (counts(scatterings))
+          sum += throughput / kPi * shiningIrradiance(surface, triangle, isWithin, numbers, 1u + k);
+        pdf = dot(direction, surface.normal) / kPi;
+        isSampled = isWithin;
+      }
+#endif
       if (!(dot(direction, surface.geometricNormal) > 0.0)) break;
     } else if (materials[surface.material].kind != PATH_NONE) {
       ++scatterings;
 #if BODIES
       if (side < 0.0 && surface.front && bodyAround() >= 0) enterThrough(surface, triangle);
+#else
+      if (side < 0.0) isWithin = surface.front;
+      isSampled = isSampled || bounces > 0u;
 #endif
     }
     ray = Ray(offsetRay(surface.position, side * surface.geometricNormal, surface.magnitude), 0.0, direction, 3e38);
@@ -292,8 +367,10 @@ vec3 reflectedBy(Surface surface, uint triangle, vec3 view, PathNumbers numbers,
       else aroundRay = ivec4(-1);
 #endif
       vec3 start = offsetRay(surface.position, side * surface.geometricNormal, surface.magnitude);
+      bool isWithin = BODIES == 0 && isGlass && side < 0.0 && surface.front;
       sum += radianceAlong(Ray(start, 0.0, direction, 3e38), triangle, throughput, 1u,
-                           PathNumbers(numbers.pixel, 2u * numbers.sampleIndex + uint(way), numbers.seed), false);
+                           PathNumbers(numbers.pixel, 2u * numbers.sampleIndex + uint(way), numbers.seed), isWithin,
+                           false);
     }
     return sum;
   }
@@ -324,7 +401,8 @@ vec3 reflectedBy(Surface surface, uint triangle, vec3 view, PathNumbers numbers,
     vec3 throughput = ofRays * facets / (pdf * float(count)) * coatFresnel(coat, clamp(dot(o, h), 0.0, 1.0));
     Ray ray = Ray(offsetRay(surface.position, surface.geometricNormal, surface.magnitude), 0.0, direction, 3e38);
     uint number = numbers.sampleIndex * uint(rays) + uint(i);
-    sum += radianceAlong(ray, triangle, throughput, 1u, PathNumbers(numbers.pixel, number, numbers.seed), false);
+    sum += radianceAlong(ray, triangle, throughput, 1u, PathNumbers(numbers.pixel, number, numbers.seed), false,
+                         false);
   }
 #endif
   return sum;
@@ -339,7 +417,7 @@ bool cloudBefore(vec3 eye, vec3 view, float distance, PathNumbers numbers, out v
   vec3 place = eye + distance * view;
   if (counts(1u)) radiance = throughput * lightIn(place, numbers, 0u);
   Ray ray = Ray(place, 0.0, isotropicDirection(unitFloat(randomWords(numbers, 0u, kPurposeCloudWay).xy)), 3e38);
-  radiance += radianceAlong(ray, kNoHit, throughput, 1u, numbers, NEXT_EVENT != 0);
+  radiance += radianceAlong(ray, kNoHit, throughput, 1u, numbers, false, NEXT_EVENT != 0);
   return true;
 }
 #endif

@@ -20,11 +20,12 @@ namespace {
 
 class BodyPreview : public PathTest {
  protected:
-  static Image drawn(const Scene& scene, const Camera& camera) {
+  static Image drawn(const Scene& scene, const Camera& camera, int samples = 1) {
     RenderSettings s;
     s.technique = "irradiance-cache";
     s.size = {32, 32};
     s.fullFloatTarget = true;
+    s.pixelSamples = samples;
     Renderer renderer(context(), library(), scene, s);
     renderer.renderToTheEnd(camera);
     return renderer.readRadiance();
@@ -89,6 +90,15 @@ TEST_F(BodyPreview, ADenseBodyIsAboutAsBrightAsByPathTracing) {
 TEST_F(BodyPreview, AMatchedCloudIsAsBrightAsByPathTracing) {
   const Scene scene = ballOf(medium({1.5f, 1.0f, 0.5f}, {0.05f, 0.3f, 0.6f}), 1.0);
   const glm::dvec3 seen = meanOf(drawn(scene, atBall(0.3))), expected = meanOf(traced(scene, atBall(0.3), 64));
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(seen[c], expected[c], 0.02) << c;
+}
+
+// A picture of an even sky lights a cloud as the even sky does: by rays to the picture, or by rays that find it.
+TEST_F(BodyPreview, APictureOfTheSkyLightsACloudOnce) {
+  Scene scene = ballOf(medium({1.5f, 1.0f, 0.5f}, {0.05f, 0.3f, 0.6f}), 1.0);
+  const glm::dvec3 expected = meanOf(drawn(scene, atBall(0.3), 8));
+  scene.environment->picture.emplace(8, 4, glm::vec3(1.0f));
+  const glm::dvec3 seen = meanOf(drawn(scene, atBall(0.3), 8));
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(seen[c], expected[c], 0.02) << c;
 }
 

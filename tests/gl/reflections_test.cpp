@@ -126,6 +126,88 @@ TEST_F(ReflectionsTest, RoughCoatsHaveNoSpecks) {
   EXPECT_NEAR(meanOf(few).y / meanOf(many).y, 1.0, 0.03);
 }
 
+// A wall that only a mirror shows, so that no record lies on it, beside a small lamp: paths that happen to meet the
+// lamp alone would be a few bright specks.
+TEST_F(ReflectionsTest, AWallWithoutRecordsBesideASmallLampHasNoSpecks) {
+  constexpr double kRadiance = 200.0, kSide = 0.2, kReflectance = 0.5, kMirror = 0.8;
+  const glm::dvec3 lampAt(1.5, 0.0, 6.0);  // 2 before the wall at z = 8, which faces the mirror at z = 0
+  SceneBuilder builder;
+  const int mirror = builder.material(glm::vec3(0.0f)),
+            wall = builder.material(glm::vec3(static_cast<float>(kReflectance))),
+            lamp = builder.material(glm::vec3(0.0f));
+  builder.materialAt(mirror).bsdf = Bsdf::mirror;
+  builder.materialAt(mirror).specular = glm::vec3(static_cast<float>(kMirror));
+  builder.materialAt(lamp).emission = glm::vec3(kRadiance);
+  builder.plate({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, mirror);
+  builder.plate({0, 0, 8}, {0, 9, 0}, {9, 0, 0}, wall);
+  builder.plate(lampAt, {kSide, 0, 0}, {0, kSide, 0}, lamp);
+  builder.scene().sun.reset();
+  const Camera camera = lookingAt({0, 0, 4}, {0, 0, 0}, 0.1);
+  RenderSettings s = settings();
+  s.of<IrradianceCacheSettings>().prefetch = 0;
+  const Image image = drawn(builder.scene(), camera, s);
+  const double rise = 2.0 * std::tan(0.05) / s.size.y;  // of a pixel's ray, per length
+  double squares = 0.0, sum = 0.0;
+  for (int y = 0; y < s.size.y; ++y)
+    for (int x = 0; x < s.size.x; ++x) {
+      // Where the pixel's ray meets the wall, 12 from the camera by way of the mirror.
+      const glm::dvec3 at(12.0 * rise * (x + 0.5 - s.size.x / 2.0), 12.0 * rise * (s.size.y / 2.0 - y - 0.5), 8.0);
+      const glm::dvec3 away = lampAt - at;
+      const double r2 = glm::dot(away, away), cosine = -away.z / std::sqrt(r2);
+      const double expected = kMirror * kReflectance / kPi * kRadiance * kSide * kSide * cosine * cosine / r2;
+      const double off = static_cast<double>(image.at(x, y).y) / expected - 1.0;
+      squares += off * off;
+      sum += off;
+    }
+  const auto pixels = static_cast<double>(image.pixels.size());
+  std::cout << "[ measured ] wall seen in a mirror: bias " << sum / pixels << ", relative error "
+            << std::sqrt(squares / pixels) << "\n";
+  EXPECT_NEAR(sum / pixels, 0.0, 0.02);  // the mirror throws 0.5 % back
+  EXPECT_LT(std::sqrt(squares / pixels), 0.1);
+}
+
+// A level floor under level water, in the sun: light enters once, is reflected by the floor, and what the surface
+// throws back from below lights the floor again. Rays are thrown back beyond the critical angle alone.
+TEST_F(ReflectionsTest, AFloorUnderWaterIsLit) {
+  constexpr double kIor = 1.333, kAlbedo = 0.3, kSun = 2.0, kAngle = 0.7;
+  const auto enters = [](double cosine) {  // [BornWolf, 1.5.2]
+    const double t = std::sqrt(1.0 - (1.0 - cosine * cosine) / (kIor * kIor)),
+                 rs = (cosine - kIor * t) / (cosine + kIor * t), rp = (kIor * cosine - t) / (kIor * cosine + t);
+    return 1.0 - 0.5 * (rs * rs + rp * rp);
+  };
+  const double thrownBack = 1.0 - 1.0 / (kIor * kIor);
+  const double expected =
+      enters(1.0) * kAlbedo / kPi * kSun * std::cos(kAngle) * enters(std::cos(kAngle)) / (1.0 - kAlbedo * thrownBack);
+  for (const bool hasSun : {true, false}) {
+    SceneBuilder builder;
+    const int floor = builder.material(glm::vec3(static_cast<float>(kAlbedo))),
+              water = builder.material(glm::vec3(0.0f));
+    builder.materialAt(water).bsdf = Bsdf::dielectric;
+    builder.materialAt(water).ior = static_cast<float>(kIor);
+    builder.plate({0, 0, 0}, {0, 0, 40}, {40, 0, 0}, floor);
+    builder.plate({0, 1, 0}, {0, 0, 40}, {40, 0, 0}, water);
+    Scene& scene = builder.scene();
+    scene.sun.reset();
+    const glm::dvec3 towards(std::sin(kAngle), std::cos(kAngle), 0.0);
+    if (hasSun) {
+      scene.sun.emplace();
+      scene.sun->direction = glm::vec3(-towards);
+      scene.sun->irradiance = glm::vec3(kSun);
+    } else {  // as far as to give the same light
+      const int lamp = builder.material(glm::vec3(0.0f));
+      constexpr double kFar = 400.0, kSide = 4.0;
+      builder.materialAt(lamp).emission = glm::vec3(static_cast<float>(kSun * kFar * kFar / (kSide * kSide)));
+      builder.plate(kFar * towards, {kSide * std::cos(kAngle), -kSide * std::sin(kAngle), 0}, {0, 0, -kSide}, lamp);
+    }
+    RenderSettings s = settings();
+    s.of<IrradianceCacheSettings>().prefetch = 0;
+    s.of<IrradianceCacheSettings>().cascades.cellSize = 0.25;  // the water's records do not reach the floor
+    const Image image = drawn(scene, lookingAt({0, 4, 0.01}, {0, 0, 0}, 0.1), s);
+    std::cout << "[ measured ] floor under water: " << meanOf(image).y / expected << "\n";
+    EXPECT_NEAR(meanOf(image).y / expected, 1.0, 0.03) << hasSun;
+  }
+}
+
 /// The open box with a back wall that reflects.
 Scene boxWithMirror(const Material& wall) {
   Scene scene = openBox();
@@ -237,6 +319,8 @@ TEST_F(ReflectionsTest, CausticsThatAreLeftOutAreSaid) {
   scene.sun.reset();
   scene.environment = Environment{glm::vec3(1.0f), {}, 0.0};
   EXPECT_FALSE(said());
+  scene.materials[0].emission = glm::vec3(1.0f);
+  EXPECT_TRUE(said());
 }
 
 // --------------------------------------------------------------------------------------------------------------- lamps
