@@ -237,14 +237,13 @@ Row draw(const DynamicOptions& options, const gl::Context& context, gl::ProgramL
       renderer = std::make_unique<Renderer>(context, programs, scene, settings);
   };
   renderer->renderToTheEnd(moments.front().camera);  // drivers finish shaders on first use
-  if (options.live) {
-    // In the window a view comes to rest, frame by frame, before it moves. Here it moves away and back first.
-    constexpr int kFramesToRest = 1000;
-    follow(moments[moments.size() > 1 ? 1 : 0]);
-    renderer->render(moments[moments.size() > 1 ? 1 : 0].camera);
-    follow(moments.front());
-    for (int frame = 0; frame < kFramesToRest && !renderer->isSettled() && !interrupted(); ++frame)
-      renderer->render(moments.front().camera);
+  if (options.live && moments.size() > 1) {
+    // In the window a view has rested for a while before it moves. Here it moves away and back, and rests.
+    follow(moments[1]);
+    renderer->render(moments[1].camera);
+    follow(moments[0]);
+    for (int sample = 0; sample < settings.pixelSamples && !interrupted(); ++sample)
+      renderer->render(moments[0].camera);
   }
   for (std::size_t k = 0; k < moments.size(); ++k) {
     if (interrupted()) return row;

@@ -57,6 +57,7 @@ struct FrameView {
 struct FrameEffort {
   bool wholePicture = false;  ///< all samples at once
   bool fadesIn = true;  ///< new contributions fade in, so that nothing flickers while the camera moves
+  bool isFurtherSample = false;  ///< of a view that this frame has drawn: light that does not depend on it is known
 };
 
 /// A pixel of the last frame that is drawn again, to say what lit it.

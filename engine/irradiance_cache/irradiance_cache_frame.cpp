@@ -114,7 +114,7 @@ bool IrradianceCacheFrame::record(gl::TimeQuery& timer, const FrameView& view, F
   const IrradianceCache::Counts& counts = cache_.counts();
   settled_ = !view.isNew && counts.frame >= since_ && counts.waiting == 0;
   const bool reflectsAnew = reflections_ && parts_.settings.pixelSamples > 1;  // another point of each pixel
-  if (settled_ && parts_.settings.reuse && !reflectsAnew) return false;
+  if (((settled_ && parts_.settings.reuse) || effort.isFurtherSample) && !reflectsAnew) return false;
   const bool mapsAreNew = hasMaps() ? maps_->willBeDrawn() : !parts_.settings.reuse;
   const std::vector<ReflectiveShadowMap::Outputs> none;
   const std::vector<ReflectiveShadowMap::Outputs>& maps = maps_ ? maps_->record(timer) : none;

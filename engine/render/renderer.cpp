@@ -416,6 +416,7 @@ void Renderer::resize(glm::ivec2 size) {
 void Renderer::apply(const RenderSettings& settings) {
   settings_.reuse = settings.reuse;
   settings_.reprojection = settings.reprojection;
+  settings_.motionSamples = settings.motionSamples;
   exposure_ = settings.exposure.value_or(sceneExposure_);
 }
 
@@ -582,10 +583,12 @@ void Renderer::render(const Camera& camera, const Camera& volumeCamera) {
   if (!accumulates()) {
     drawSample(0, {});
   } else if (!isSettled()) {
-    const int summed = antialiasing_.count();
-    const int sample = summed > 0 ? summed : moves || view_->lacksLight ? nextSample_++ % settings_.pixelSamples : 0;
-    drawSample(sample, {});
-    showAccumulated(sample, moves);
+    for (int i = 0; i < (moves ? settings_.motionSamples : 1) && !isSettled(); ++i) {
+      const int summed = antialiasing_.count();
+      const int sample = summed > 0 ? summed : moves || view_->lacksLight ? nextSample_++ % settings_.pixelSamples : 0;
+      drawSample(sample, {.isFurtherSample = i > 0});
+      showAccumulated(sample, moves && i == 0);
+    }
   } else {
     bindFrameConstants(viewOf(camera, volumeCamera));  // for the exposure
   }

@@ -162,10 +162,10 @@ TEST_F(AntialiasingGl, AViewAtRestEndsAtTheSameBitsOnEveryRun) {
 TEST_F(AntialiasingGl, InMotionAnEdgeIsSmoothAndWhereItIs) {
   const EdgeScene scene(0.3, 0.25f);
   for (const bool orthographic : {true, false}) {
-    double with = 0.0, without = 0.0;
-    for (const bool reprojection : {true, false}) {
+    const auto error = [&](bool reprojection, int samples) {
       RenderSettings settings = settingsFor(16);
       settings.reprojection = reprojection;
+      settings.motionSamples = samples;
       Renderer renderer(context(), programs(), scene, settings);
       double squares = 0.0;
       constexpr int kFrames = 40;
@@ -179,11 +179,14 @@ TEST_F(AntialiasingGl, InMotionAnEdgeIsSmoothAndWhereItIs) {
           squares += std::pow(image.at(x, 5).x - right, 2.0) / kFrames;
         }
       }
-      (reprojection ? with : without) = std::sqrt(squares);
-    }
-    std::printf("edge in motion, %s: error %.3f, each frame alone %.3f\n",
-                orthographic ? "orthographic" : "perspective", with, without);
+      return std::sqrt(squares);
+    };
+    const double with = error(true, 1), without = error(false, 1), four = error(true, 4), fourAlone = error(false, 4);
+    std::printf("edge in motion, %s: error %.3f, each frame alone %.3f; with four samples %.3f and %.3f\n",
+                orthographic ? "orthographic" : "perspective", with, without, four, fourAlone);
     EXPECT_LT(with, 0.4 * without) << orthographic;
+    EXPECT_LT(four, 0.8 * with) << orthographic;
+    EXPECT_LT(fourAlone, 0.55 * without) << orthographic;
   }
 }
 
