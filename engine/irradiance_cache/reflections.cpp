@@ -44,7 +44,8 @@ void Reflections::record(int sample, int samples, const VisibleSurfaces& visible
     program_->set("pixelSample", sample);
     radiance_.bindImage(0, gl::Access::write);
     const double ofEach = bodies_ ? kRaysThroughMedia : kRaysOfEach;
-    const double iterations = (1.0 + ofEach * rays * (1 + lamps_)) * gl::kIterationsOfRay;
+    // Its own ray, one to what shines, and one to each lamp.
+    const double iterations = (1.0 + ofEach * rays * (2 + lamps_)) * gl::kIterationsOfRay;
     chunks_.forEach(radiance_.size2d(), iterations, kReflectionGroup, [&](glm::ivec2 corner, glm::ivec2 size) {
       program_->set("firstPixel", corner);
       pass.dispatch(glm::ivec3(size, 1), glm::ivec3(kReflectionGroup, kReflectionGroup, 1));
