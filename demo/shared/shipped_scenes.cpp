@@ -22,7 +22,8 @@ std::map<std::string, fs::path> shippedScenes() {
 
 std::string sceneFileOf(const std::string& text) {
   std::error_code error;
-  if (text.empty() || fs::exists(text, error) || fs::path(text).has_parent_path()) return text;
+  const bool isFile = fs::exists(text, error) && !fs::is_directory(text, error);
+  if (text.empty() || isFile || fs::path(text).has_parent_path()) return text;
   const auto scenes = shippedScenes();
   const auto found = scenes.find(text);
   return found == scenes.end() ? text : found->second.string();

@@ -10,7 +10,7 @@ namespace lucerna::demo {
 /// By name, the file's stem: the JSON scenes of the folders of assets/. Empty where there is no data folder.
 std::map<std::string, std::filesystem::path> shippedScenes();
 
-/// The file that an argument SCENE means: the file of that name if there is one; else the shipped scene, if the text is
+/// The file that an argument SCENE means: the file of that name if there is one (not a folder); else the shipped scene, if the text is
 /// the name of one; else the text.
 std::string sceneFileOf(const std::string& text);
 

@@ -73,20 +73,22 @@ GpuScene::GpuScene(const Scene& scene, const SceneFeatures& features, const gl::
     const Texture& texture = scene.textures[static_cast<std::size_t>(index)];
     const Bitmap& bitmap = texture.bitmap;
     const std::string name = fmt::format("{} {}", use.name, texture.file.filename().string());
-    const int levels = mipLevels(bitmap.width, bitmap.height);
+    const glm::ivec2 size(bitmap.width, bitmap.height);
     std::vector<std::uint8_t> texels = flippedRows(bitmap);
-    gl::Texture& target = textures_.emplace_back(name, use.format, glm::ivec2(bitmap.width, bitmap.height),
-                                                 withWraps(sampling, texture.wraps), levels);
     if (use.format == gl::Format::r8) {
       const std::size_t channel = bitmap.hasAlpha ? 3 : 0;
       for (std::size_t i = 0; i < texels.size() / 4; ++i) texels[i] = texels[4 * i + channel];
       texels.resize(texels.size() / 4);
+      const std::vector<std::vector<std::uint8_t>> smaller = maskLevels(texels, size, texture.wraps);
+      gl::Texture& target = textures_.emplace_back(name, use.format, size, withWraps(sampling, texture.wraps),
+                                                   1 + static_cast<int>(smaller.size()));
       target.upload(gl::Texels::redByte, texels.data());
-      int level = 0;
-      for (const std::vector<std::uint8_t>& smaller : maskLevels(texels, {bitmap.width, bitmap.height}, texture.wraps))
-        target.upload(gl::Texels::redByte, smaller.data(), ++level);
+      for (std::size_t i = 0; i < smaller.size(); ++i)
+        target.upload(gl::Texels::redByte, smaller[i].data(), 1 + static_cast<int>(i));
       return place->second;
     }
+    gl::Texture& target = textures_.emplace_back(name, use.format, size, withWraps(sampling, texture.wraps),
+                                                 mipLevels(bitmap.width, bitmap.height));
     target.upload(gl::Texels::rgbaByte, texels.data());
     target.generateMipmaps();
     return place->second;

@@ -121,6 +121,10 @@ std::vector<std::vector<std::uint8_t>> maskLevels(const std::vector<std::uint8_t
     std::vector<std::uint8_t>& stored = levels.emplace_back();
     for (const float value : level.values)
       stored.push_back(static_cast<std::uint8_t>(std::clamp(std::lround(scale * value), 0L, 255L)));
+    if (std::abs(maskCoverage(stored, level.size, wraps) - coverage) > 0.02 + 0.05 * coverage) {
+      levels.pop_back();
+      break;
+    }
   }
   return levels;
 }

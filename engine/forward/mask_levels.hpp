@@ -14,8 +14,8 @@ namespace lucerna {
 /// The share of a picture's area where its bilinear interpolation is at least 1/2.
 double maskCoverage(const std::vector<std::uint8_t>& texels, glm::ivec2 size, TextureWraps wraps);
 
-/// Levels 1 and up, each of half the size, down to one texel: the means of the texels that each covers, scaled to the
-/// coverage of the picture.
+/// Levels 1 and up, each of half the size: the means of the texels that each covers, scaled to the coverage of the
+/// picture; as far as they can have it, since one texel covers all or nothing.
 std::vector<std::vector<std::uint8_t>> maskLevels(const std::vector<std::uint8_t>& texels, glm::ivec2 size,
                                                   TextureWraps wraps);
 

@@ -100,6 +100,12 @@ TEST_F(CommandLine, WrongWordsNameTheNearest) {
   }
 }
 
+TEST_F(CommandLine, AFolderOfAShippedScenesNameIsNotMeant) {
+  std::filesystem::create_directory(path("cornell"));
+  const RunResult shown = run("cd '" + path(".") + "' && '" LUCERNA_BINARY "' info cornell");
+  EXPECT_EQ(shown.exitCode, 0) << shown.err;
+}
+
 TEST_F(CommandLine, OptionsOfTheEnvironmentFollowThoseOfTheCommand) {
   const RunResult first = run("LUCERNA_OPTIONS='--size 24x12 --quiet' '" LUCERNA_BINARY "' render '" + scene() +
                               "' --technique direct -o '" + path("small.png") + "'");
