@@ -255,7 +255,7 @@ void Renderer::warnOfWhatIsLeftOut(const TechniqueEntry& technique) {
                      geometry_ ? ", they look matt but for lamps' highlights" : ", but lamps' highlights",
                      fmt::join(reflecting, ", "),
                      techniquesThat([](const TechniqueEntry& t) { return t.drawsReflections; })));
-  // Reflected rays find surfaces behind glass, and light those within it straight through.
+  // Reflected rays find surfaces behind glass, but not the light that glass bends or a mirror throws onto them.
   const std::vector<std::string> casters = namesOfDrawn(gpuScene_->scene(), [](const Material& material) {
     return material.bsdf == Bsdf::dielectric || material.bsdf == Bsdf::mirror;
   });

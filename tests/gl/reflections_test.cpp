@@ -1,6 +1,7 @@
 // What coats, mirrors and glass show in the technique irradiance-cache: known answers, and the path tracer's pictures.
 #include "irradiance_cache/settings.hpp"
 #include "support/coat_reference.hpp"
+#include "support/media_reference.hpp"
 #include "support/media_scenes.hpp"
 #include "support/path_scenes.hpp"
 #include "support/pixel_rays.hpp"
@@ -170,11 +171,7 @@ TEST_F(ReflectionsTest, AWallWithoutRecordsBesideASmallLampHasNoSpecks) {
 // throws back from below lights the floor again. Rays are thrown back beyond the critical angle alone.
 TEST_F(ReflectionsTest, AFloorUnderWaterIsLit) {
   constexpr double kIor = 1.333, kAlbedo = 0.3, kSun = 2.0, kAngle = 0.7;
-  const auto enters = [](double cosine) {  // [BornWolf, 1.5.2]
-    const double t = std::sqrt(1.0 - (1.0 - cosine * cosine) / (kIor * kIor)),
-                 rs = (cosine - kIor * t) / (cosine + kIor * t), rp = (kIor * cosine - t) / (kIor * cosine + t);
-    return 1.0 - 0.5 * (rs * rs + rp * rp);
-  };
+  const auto enters = [](double cosine) { return 1.0 - reference::fresnel(cosine, 1.0 / kIor); };
   const double thrownBack = 1.0 - 1.0 / (kIor * kIor);
   const double expected =
       enters(1.0) * kAlbedo / kPi * kSun * std::cos(kAngle) * enters(std::cos(kAngle)) / (1.0 - kAlbedo * thrownBack);
