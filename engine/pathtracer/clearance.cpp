@@ -2,6 +2,8 @@
 
 #include "base/error.hpp"
 
+#include <glm/gtc/packing.hpp>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -19,32 +21,36 @@ double squaredDistanceToSegment(const glm::dvec3& a, const glm::dvec3& b, const 
   return glm::dot(rest, rest);
 }
 
-/// Halves a cube down to the cells, and passes on only triangles that may be nearest to a point in it.
+/// Halves a cube down to the cells, and passes on only triangles that may matter to a point in it.
 class Filler {
  public:
-  Filler(const std::vector<Corners>& triangles, ClearanceGrid& grid) : triangles_(triangles), grid_(grid) {}
+  Filler(const std::vector<Corners>& triangles, const std::vector<bool>& isBoundary, double freePath,
+         ClearanceGrid& grid)
+      : triangles_(triangles), isBoundary_(isBoundary), freePath_(freePath), grid_(grid) {}
 
   /// side: in cells, a power of two.
   void fill(const glm::ivec3& first, int side, const std::vector<int>& candidates, bool onManyThreads) {
     if (glm::any(glm::greaterThanEqual(first, grid_.size))) return;
     const glm::dvec3 centre = grid_.min + grid_.cell * (glm::dvec3(first) + 0.5 * side);
-    std::vector<double> distances(candidates.size());
+    const double diameter = std::sqrt(3.0) * side * grid_.cell;
+    std::vector<Near> near;
     double nearest = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < candidates.size(); ++i) {
-      distances[i] = distanceTo(triangles_[static_cast<std::size_t>(candidates[i])], centre);
-      nearest = std::min(nearest, distances[i]);
+    for (const int i : candidates) {
+      near.push_back({distanceTo(triangles_[static_cast<std::size_t>(i)], centre), i});
+      nearest = std::min(nearest, near.back().distance);
     }
     if (side == 1) {
       const std::size_t row = static_cast<std::size_t>(first.y) +
                               static_cast<std::size_t>(grid_.size.y) * static_cast<std::size_t>(first.z);
-      grid_.radius[static_cast<std::size_t>(first.x) + static_cast<std::size_t>(grid_.size.x) * row] =
-          static_cast<float>(nearest * (1.0 - 1e-6));
+      Clearance& clearance =
+          grid_.clearances[static_cast<std::size_t>(first.x) + static_cast<std::size_t>(grid_.size.x) * row];
+      clearance = beyondPlane(near, centre);
+      clearance.radius = static_cast<float>(nearest * (1.0 - 1e-6));
       return;
     }
-    const double reach = nearest + std::sqrt(3.0) * side * grid_.cell;  // the cube's diameter
     std::vector<int> kept;
-    for (std::size_t i = 0; i < candidates.size(); ++i)
-      if (distances[i] <= reach) kept.push_back(candidates[i]);
+    for (const Near& one : near)
+      if (one.distance <= std::max(nearest + diameter, farthest() + 0.5 * diameter)) kept.push_back(one.triangle);
     std::vector<std::future<void>> parts;
     for (int k = 0; k < 8; ++k) {
       const glm::ivec3 child = first + side / 2 * glm::ivec3(k & 1, k >> 1 & 1, k >> 2);
@@ -57,7 +63,51 @@ class Filler {
   }
 
  private:
+  struct Near {
+    double distance;
+    int triangle;
+  };
+
+  /// Beyond it no flight from the cell is expected.
+  double farthest() const { return 0.5 * std::sqrt(3.0) * grid_.cell + 8.0 * freePath_; }
+
+  /// A plane along the nearest triangle, moved towards the medium until all within its reach lie beyond it. Of all
+  /// reaches, the one that keeps most flights free, by a rough estimate: of those that stay within the reach, and those
+  /// that do not begin between plane and wall.
+  Clearance beyondPlane(std::vector<Near>& near, const glm::dvec3& centre) const {
+    std::erase_if(near, [&](const Near& one) { return !(one.distance < farthest()); });
+    if (near.empty()) return {};
+    std::sort(near.begin(), near.end(), [](const Near& a, const Near& b) {
+      return a.distance != b.distance ? a.distance < b.distance : a.triangle < b.triangle;
+    });
+    const auto first = static_cast<std::size_t>(near.front().triangle);
+    const auto& [a, b, c] = triangles_[first];
+    const glm::dvec3 across = glm::cross(b - a, c - a);
+    if (!(glm::length(across) > 0.0)) return {};
+    const bool faces = isBoundary_[first] || glm::dot(across, a - centre) > 0.0;
+    Clearance best;
+    best.normal = packNormal(glm::normalize(faces ? across : -across));
+    const glm::dvec3 normal = unpackNormal(best.normal);
+    double wall = 0.0, depth = std::numeric_limits<double>::infinity(), most = 0.0;
+    for (std::size_t i = 0; i < near.size(); ++i) {
+      for (const glm::dvec3& corner : triangles_[static_cast<std::size_t>(near[i].triangle)])
+        depth = std::min(depth, glm::dot(normal, corner - centre));
+      if (i == 0) wall = depth;
+      const double reach = i + 1 < near.size() ? near[i + 1].distance : farthest(),
+                   beyond = std::max(reach - 0.5 * grid_.cell, 0.0),
+                   value = (1.0 - std::exp(-beyond / freePath_)) * std::exp((depth - wall) / freePath_);
+      if (value > most) {
+        most = value;
+        best.reach = static_cast<float>(reach * (1.0 - 1e-6));
+        best.depth = static_cast<float>(depth - 1e-6 * std::abs(depth));
+      }
+    }
+    return best;
+  }
+
   const std::vector<Corners>& triangles_;
+  const std::vector<bool>& isBoundary_;
+  double freePath_;
   ClearanceGrid& grid_;
 };
 
@@ -76,22 +126,40 @@ double distanceTo(const Corners& triangle, const glm::dvec3& point) {
                              squaredDistanceToSegment(c, a, point)}));
 }
 
-ClearanceGrid clearanceGrid(const std::vector<Corners>& triangles, const glm::dvec3& min, const glm::dvec3& max,
-                            int cells) {
+std::uint32_t packNormal(const glm::dvec3& normal) {
+  const glm::dvec3 n = normal / (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z));
+  const auto sign = [](double v) { return v < 0.0 ? -1.0 : 1.0; };
+  const glm::dvec2 flat =
+      n.z >= 0.0 ? glm::dvec2(n) : glm::dvec2((1.0 - std::abs(n.y)) * sign(n.x), (1.0 - std::abs(n.x)) * sign(n.y));
+  return glm::packSnorm2x16(glm::vec2(flat));
+}
+
+glm::dvec3 unpackNormal(std::uint32_t packed) {
+  const glm::dvec2 flat(glm::unpackSnorm2x16(packed));
+  glm::dvec3 n(flat, 1.0 - std::abs(flat.x) - std::abs(flat.y));
+  const double below = std::max(-n.z, 0.0);
+  n.x += n.x < 0.0 ? below : -below;
+  n.y += n.y < 0.0 ? below : -below;
+  return glm::normalize(n);
+}
+
+ClearanceGrid clearanceGrid(const std::vector<Corners>& triangles, const std::vector<bool>& isBoundary,
+                            const glm::dvec3& min, const glm::dvec3& max, int cells, double freePath) {
   CHECK(cells > 0 && std::has_single_bit(static_cast<unsigned>(cells)), "{} cells", cells);
+  CHECK(isBoundary.size() == triangles.size() && freePath > 0.0, "{} sides", isBoundary.size());
   ClearanceGrid grid;
   const glm::dvec3 extent = max - min;
   grid.min = min;
   grid.cell = std::max({extent.x, extent.y, extent.z}) / cells;
   CHECK(grid.cell > 0.0, "an empty box");
   grid.size = glm::clamp(glm::ivec3(glm::ceil(extent / grid.cell)), glm::ivec3(1), glm::ivec3(cells));
-  grid.radius.resize(static_cast<std::size_t>(grid.size.x) * static_cast<std::size_t>(grid.size.y) *
-                     static_cast<std::size_t>(grid.size.z));
+  grid.clearances.resize(static_cast<std::size_t>(grid.size.x) * static_cast<std::size_t>(grid.size.y) *
+                         static_cast<std::size_t>(grid.size.z));
   std::vector<int> all;
   for (std::size_t i = 0; i < triangles.size(); ++i)
     if (std::isfinite(glm::dot(triangles[i][0] + triangles[i][1] + triangles[i][2], glm::dvec3(1.0))))
       all.push_back(static_cast<int>(i));
-  Filler(triangles, grid).fill(glm::ivec3(0), cells, all, true);
+  Filler(triangles, isBoundary, freePath, grid).fill(glm::ivec3(0), cells, all, true);
   return grid;
 }
 

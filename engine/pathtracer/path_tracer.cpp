@@ -26,18 +26,23 @@ constexpr GLuint kConstantsBinding = 0;  // GL_UNIFORM_BUFFER
 constexpr GLuint kStateBinding = 5, kMediaBinding = 6, kInteriorsBinding = 7, kGridsBinding = 0,
                  kDensitiesBinding = 1;  // GL_SHADER_STORAGE_BUFFER
 constexpr GLuint kClearancesUnit = 3, kCastersUnit = 5;
-constexpr int kGroupSide = 8;
+constexpr int kGroupSide = 8, kGroupPixels = kGroupSide * kGroupSide;
 constexpr int kClearanceCells = 64;
+// With walks a submission has rounds: of rays, each of which counts 4 iterations and more, and of walks.
+constexpr std::uint32_t kRoundIterations = 512;
 // llvmpipe leaves all loops of a shader after 65,535 iterations, counted together for all lanes of a vector (8, at most
 // 16).
 constexpr std::uint32_t kSoftwareIterations = 3500, kMostIterations = 1u << 16;
+constexpr std::uint32_t kLoopsOfLinearSeeds = 32;  // published random numbers have loops, which no lane counts
 constexpr double kLanesOfTile =
     512.0 * 512.0;  // on a GPU; a smaller tile, also on a software renderer, begins with as many iterations per lane
 /// The beginning of StateBlock (path.glsl); std430 aligns the following vectors of the lanes to 16 bytes.
 struct StateHeader {
-  std::uint32_t unfinished = 0, leakedPaths = 0, wrongCrossings = 0, longest = 0, allIterations = 0, collisions = 0,
-                padding[2]{};
+  std::uint32_t leakedPaths = 0, wrongCrossings = 0, longest = 0, allIterations = 0, collisions = 0;
+  std::uint32_t finished = 0, padding[2]{};
+  std::array<std::uint32_t, 4> heads{}, tails{};  ///< of the queues
 };
+static_assert(sizeof(StateHeader) % 16 == 0);
 constexpr std::size_t kStateHeaderBytes = sizeof(StateHeader), kVec4Bytes = 16;
 constexpr std::size_t kPathWords = 6, kSpilledWords = 8, kSpilledInteriorWords = 17,
                       kManifoldWords = 8;  // STATE_WORDS of path.glsl
@@ -120,6 +125,11 @@ Casters castersOf(const Scene& scene, const glm::dvec3& origin) {
   return casters;
 }
 
+int groupsOf(const glm::ivec2& size) {
+  const glm::ivec2 groups = (size + kGroupSide - 1) / kGroupSide;
+  return groups.x * groups.y;
+}
+
 /// Side of a tile whose lanes' state fits in a storage block.
 int tileSideOn(const gl::Capabilities& capabilities, std::size_t stateWords) {
   int side = capabilities.softwareRenderer ? 128 : 512;
@@ -138,7 +148,9 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
     : settings_(settings),
       features_(analyse(scene)),
       constantsBuffer_("path constants", sizeof(shared::PathConstants), nullptr, gl::Usage::dynamicDraw),
-      mostIterations_(context.capabilities().softwareRenderer ? kSoftwareIterations : kMostIterations),
+      mostIterations_(!context.capabilities().softwareRenderer ? kMostIterations
+                      : settings.deviations.linearSeeds        ? kSoftwareIterations / kLoopsOfLinearSeeds
+                                                               : kSoftwareIterations),
       clearTexture_(context.capabilities().clearTexture),
       iterations_(settings.submissionSeconds, kLanesOfTile, mostIterations_) {
   const gl::Capabilities& capabilities = context.capabilities();
@@ -216,6 +228,7 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
     flags.push_back({"MOST_CASTERS", kMostCasters});
     manifoldProgram_ = &programs.loadCompute("specular manifolds", "pathtracer/manifold.comp", flags);
   }
+  if (walks()) walkProgram_ = &programs.loadCompute("walks in media", "pathtracer/walk.comp", kernelFlags());
   setCamera(scene.cameras.empty() ? Camera{} : scene.cameras.front());
 }
 
@@ -226,8 +239,9 @@ void PathTracer::allocateFilm() {
   const std::size_t lanes = static_cast<std::size_t>(groups.x * groups.y) * kGroupSide * kGroupSide;
   constants_.picture = glm::ivec4(settings_.size, static_cast<int>(lanes), 0);
   const std::size_t inspection = settings_.inspectedPixel ? kInspectedWords : 0;
-  state_ = gl::Buffer("path state", kStateHeaderBytes + (lanes * stateWords() + inspection) * kVec4Bytes, nullptr,
-                      gl::Usage::dynamicCopy);
+  state_ =
+      gl::Buffer("path state", kStateHeaderBytes + (lanes * stateWords() + queueLength() + inspection) * kVec4Bytes,
+                 nullptr, gl::Usage::dynamicCopy);
   filmMean_ = gl::Texture("film mean", gl::Format::rgba32ui, filmSize());
   filmM2_ = gl::Texture("film M2", gl::Format::rgba32ui, filmSize());
   filmRest_ = gl::Texture("film rest", gl::Format::rgba32ui, filmSize());
@@ -292,6 +306,7 @@ gl::ShaderFlags PathTracer::kernelFlags() const {
   gl::ShaderFlags all = flags();
   all.insert(all.end(), {{"SHARED_STACK", scene_->rays().sharedStack()},
                          {"STATE_WORDS", static_cast<int>(stateWords())},
+                         {"SHARES_PIXELS", sharesPixels()},
                          {"INSPECTED", settings_.inspectedPixel.has_value()},
                          {"HALVES", settings_.halves},
                          {"SHADOW_AT_ONCE", scene_->rays().sharedStack() == 0 && !hasInteriors()}});
@@ -300,28 +315,37 @@ gl::ShaderFlags PathTracer::kernelFlags() const {
 
 void PathTracer::addClearances(const Scene& scene) {
   std::vector<Corners> triangles(scene.triangleCount());
+  std::vector<int> ranks(triangles.size(), -1);
   for (std::size_t t = 0; t < triangles.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k)
       triangles[t][k] = glm::dvec3(scene.vertices[scene.indices[3 * t + k]].position) - scene_->origin();
-  std::vector<float> radii;
+  for (const Mesh& mesh : scene.meshes)
+    std::fill_n(ranks.begin() + mesh.firstIndex / 3, mesh.indexCount / 3,
+                boundaries_.rankOfMaterial[static_cast<std::size_t>(mesh.material)]);
+  std::vector<Clearance> clearances;
   const std::vector<Bounds> bounds = boundsOfRanks(boundaries_);
   for (std::size_t rank = 0; rank < boundaries_.interiors.size(); ++rank) {
     shared::InteriorRecord& interior = boundaries_.interiors[rank];
     const double extent = glm::length(bounds[rank].extent());
-    if (interior.medium < 0 || !(extent > 0.0) ||
-        !isDense(scene.media[static_cast<std::size_t>(interior.medium)], extent))
-      continue;
-    const ClearanceGrid grid = clearanceGrid(triangles, bounds[rank].min - scene_->origin(),
-                                             bounds[rank].max - scene_->origin(), kClearanceCells);
-    interior.clearance = static_cast<int>(radii.size());
+    if (interior.medium < 0 || !(extent > 0.0)) continue;
+    const Medium& medium = scene.media[static_cast<std::size_t>(interior.medium)];
+    if (!isDense(medium, extent)) continue;
+    std::vector<bool> isBoundary(triangles.size());
+    for (std::size_t t = 0; t < triangles.size(); ++t) isBoundary[t] = ranks[t] == static_cast<int>(rank);
+    const glm::dvec3 extinction = glm::dvec3(medium.scattering) + glm::dvec3(medium.absorption);
+    const ClearanceGrid grid =
+        clearanceGrid(triangles, isBoundary, bounds[rank].min - scene_->origin(), bounds[rank].max - scene_->origin(),
+                      kClearanceCells, 1.0 / std::max(std::max(extinction.x, extinction.y), extinction.z));
+    interior.clearance = static_cast<int>(clearances.size());
     interior.cell = static_cast<float>(grid.cell);
     interior.min = glm::vec3(grid.min);
     interior.size = glm::ivec4(grid.size, 0);
-    radii.insert(radii.end(), grid.radius.begin(), grid.radius.end());
+    clearances.insert(clearances.end(), grid.clearances.begin(), grid.clearances.end());
   }
-  features_.denseMedia = !radii.empty();
+  features_.denseMedia = !clearances.empty();
   if (features_.denseMedia)
-    clearances_ = gl::BufferTexture("path clearances", gl::Format::r32f, radii.size() * sizeof(float), radii.data());
+    clearances_ = gl::BufferTexture("path clearances", gl::Format::rgba32ui, clearances.size() * sizeof(Clearance),
+                                    clearances.data());
 }
 
 void PathTracer::setCamera(const Camera& camera) {
@@ -472,6 +496,14 @@ void PathTracer::dropUnfinishedPass() {
   tileBegun_ = false;
 }
 
+bool PathTracer::sharesPixels() const {
+  return !settings_.inspectedPixel && (scene_->rays().sharedStack() == 0 || walks());
+}
+
+std::size_t PathTracer::queueLength() const {
+  return sharesPixels() ? std::bit_ceil(static_cast<std::size_t>(constants_.picture.z)) : 0;
+}
+
 bool PathTracer::submit(std::uint32_t samples, Passes passes) {
   if (done_ >= samples) return false;
   if (!cameraWarning_.empty()) logWarning("{}", std::exchange(cameraWarning_, {}));
@@ -487,6 +519,18 @@ bool PathTracer::submit(std::uint32_t samples, Passes passes) {
   const bool begins = !tileBegun_;
   if (begins) {
     state_.clear();
+    finished_ = 0;
+    turn_ = 0;
+    if (sharesPixels()) {
+      // All pixels wait, by number, and beyond the tile's edge as many as its groups have.
+      StateHeader header;
+      header.tails[0] = static_cast<std::uint32_t>(groupsOf(size) * kGroupPixels);
+      std::vector<glm::uvec4> queue(header.tails[0]);
+      for (std::uint32_t i = 0; i < queue.size(); ++i) queue[i].x = i;
+      state_.upload(0, sizeof header, &header);
+      state_.upload(kStateHeaderBytes + static_cast<std::size_t>(constants_.picture.z) * stateWords() * kVec4Bytes,
+                    queue.size() * kVec4Bytes, queue.data());
+    }
     iterations_.restart();
     iterations_.setIterationsOfUnit(lanes);
     gl::copyTexels(filmMean_, corner, kept_[0], {0, 0}, size);
@@ -494,12 +538,15 @@ bool PathTracer::submit(std::uint32_t samples, Passes passes) {
     gl::copyTexels(filmRest_, corner, kept_[2], {0, 0}, size);
   }
   const StateHeader zeros{};
-  state_.upload(0, sizeof zeros, &zeros);
+  state_.upload(0, offsetof(StateHeader, heads), &zeros);
 
   const auto start = Clock::now();
   dispatch(corner, size, samplesOfTile(passTarget_));
   const auto header = counters_.readFirst<StateHeader>(state_);
-  const std::uint32_t unfinished = header.unfinished;
+  finished_ += header.finished;
+  const auto unfinished = static_cast<std::uint32_t>(lanes) - finished_;
+  CHECK(unfinished == 0 || header.allIterations > 0, "path tracing has lost {} pixels: a loop was left early",
+        unfinished);
   leakedPaths_ += header.leakedPaths;
   wrongCrossings_ += header.wrongCrossings;
   iterationsTaken_ += header.allIterations;
@@ -560,6 +607,10 @@ void PathTracer::bind(const gl::Program& program) {
     program.set("cameraIor", cameraIor_);
   }
   if (features_.denseMedia) clearances_.bind(kClearancesUnit);
+  if (sharesPixels()) {
+    program.set("turn", turn_);
+    program.set("queueMask", static_cast<unsigned>(queueLength() - 1));
+  }
   if (features_.media) media_.bindStorage(kMediaBinding);
   if (features_.heterogeneousMedia) {
     grids_.bindStorage(kGridsBinding);
@@ -570,16 +621,27 @@ void PathTracer::bind(const gl::Program& program) {
 void PathTracer::dispatch(glm::ivec2 corner, glm::ivec2 size, std::uint32_t target) {
   constants_.tile = glm::ivec4(corner, size);
   constants_.sampleTarget = target;
-  constants_.iterations = iterations_.units();
+  const std::uint32_t iterations = iterations_.units(),
+                      rounds = walks() ? (iterations + kRoundIterations - 1) / kRoundIterations : 1;
+  constants_.iterations = walks() ? std::min(iterations, kRoundIterations) : iterations;
   constantsBuffer_.upload(0, sizeof constants_, &constants_);
-  {
-    const gl::ComputePass pass("path tracing", gl::Barrier::storage | gl::Barrier::image | gl::Barrier::textureFetch,
-                               gl::Barrier::image);
-    bind(*program_);
-    filmMean_.bindImage(0, gl::Access::readWrite);
-    filmM2_.bindImage(1, gl::Access::readWrite);
-    filmRest_.bindImage(2, gl::Access::readWrite);
-    pass.dispatch(glm::ivec3(size, 1), glm::ivec3(kGroupSide, kGroupSide, 1));
+  const int unfinished = size.x * size.y - static_cast<int>(finished_),
+            groups = sharesPixels() ? (unfinished + kGroupPixels - 1) / kGroupPixels : groupsOf(size);
+  for (std::uint32_t round = 0; round < rounds; ++round, turn_ = 1 - turn_) {
+    {
+      const gl::ComputePass pass("path tracing", gl::Barrier::storage | gl::Barrier::image | gl::Barrier::textureFetch,
+                                 gl::Barrier::image);
+      bind(*program_);
+      filmMean_.bindImage(0, gl::Access::readWrite);
+      filmM2_.bindImage(1, gl::Access::readWrite);
+      filmRest_.bindImage(2, gl::Access::readWrite);
+      pass.dispatch(glm::ivec3(kGroupSide * groups, kGroupSide, 1), glm::ivec3(kGroupSide, kGroupSide, 1));
+    }
+    if (!walks()) continue;
+    const gl::ComputePass pass("walks in media", gl::Barrier::storage);
+    bind(*walkProgram_);
+    filmMean_.bindImage(0, gl::Access::read);
+    pass.dispatch(glm::ivec3(kGroupSide * groups, kGroupSide, 1), glm::ivec3(kGroupSide, kGroupSide, 1));
   }
   if (casters_.empty()) return;
   // Light that paths have asked for, through refracting boundaries.

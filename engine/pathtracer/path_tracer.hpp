@@ -157,6 +157,11 @@ class PathTracer {
   gl::ShaderFlags kernelFlags() const;
   std::size_t stateWords() const;  // of a lane in state_, in uvec4
   bool hasInteriors() const { return features_.dielectrics || features_.nullBoundaries || features_.media; }
+  /// Whether paths walk through dense media in a kernel of their own.
+  bool walks() const { return features_.denseMedia && casters_.empty() && !settings_.inspectedPixel; }
+  /// Whether lanes take pixels from a queue; else each has its own.
+  bool sharesPixels() const;
+  std::size_t queueLength() const;
   /// Grids of distances to the nearest triangle for the boundaries of dense media.
   void addClearances(const Scene& scene);
   enum class Passes { doubling, whole };
@@ -184,7 +189,7 @@ class PathTracer {
   SceneFeatures features_;
   std::optional<PathScene> scene_;  ///< always set after construction
   shared::PathConstants constants_{};
-  const gl::Program *program_ = nullptr, *manifoldProgram_ = nullptr;
+  const gl::Program *program_ = nullptr, *manifoldProgram_ = nullptr, *walkProgram_ = nullptr;
   /// Mirrors and smooth refracting bodies (path_tracer.cpp); empty: no lamp is sought by way of them.
   std::vector<glm::vec4> casters_;
   std::vector<glm::uvec4> casterParts_;
@@ -212,6 +217,8 @@ class PathTracer {
   std::uint32_t done_ = 0, passTarget_ = 0;
   int tile_ = 0;
   bool tileBegun_ = false;
+  std::uint32_t finished_ = 0;  ///< pixels of the tile
+  unsigned turn_ = 0;  ///< of the queues
   gl::ChunkSize iterations_;  ///< per lane, in the next submission
   std::uint64_t largestBegun_ = 0, largest_ = 0;
   std::vector<InspectedLight> inspected_;

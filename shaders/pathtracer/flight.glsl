@@ -162,42 +162,51 @@ void weighFlight(inout Path path, MediumRecord medium, vec3 q, float distance, b
 }
 
 #if WALKS
-// distances from cell centres to the scene's nearest triangle
-layout(binding = 3) uniform samplerBuffer clearances;
+// Per cell: a packed normal, and bits of the floats depth, reach and radius (clearance.hpp).
+layout(binding = 3) uniform usamplerBuffer clearances;
+
+uvec4 clearanceAt(InteriorRecord interior, vec3 position, out vec3 fromCentre) {
+  ivec3 cell = clampedInt((position - interior.min) / interior.cell, ivec3(0), interior.size.xyz - 1);
+  fromCentre = position - interior.min - (vec3(cell) + 0.5) * interior.cell;
+  return texelFetch(clearances, interior.clearance + cell.x + interior.size.x * (cell.y + interior.size.y * cell.z));
+}
 
 // A distance within which no triangle is near a position.
-float clearanceAt(InteriorRecord interior, vec3 position) {
-  ivec3 cell = clampedInt((position - interior.min) / interior.cell, ivec3(0), interior.size.xyz - 1);
-  float radius =
-      texelFetch(clearances, interior.clearance + cell.x + interior.size.x * (cell.y + interior.size.y * cell.z)).x;
-  return radius - length(position - interior.min - (vec3(cell) + 0.5) * interior.cell);
+float clearanceRadius(InteriorRecord interior, vec3 position) {
+  vec3 fromCentre;
+  uvec4 clearance = clearanceAt(interior, position, fromCentre);
+  return uintBitsToFloat(clearance.w) - length(fromCentre);
+}
+
+vec3 unpackNormal(uint word) {
+  vec2 square = unpackSnorm2x16(word);
+  vec3 n = vec3(square, 1.0 - abs(square.x) - abs(square.y));
+  float below = max(-n.z, 0.0);
+  n.xy += mix(vec2(-below), vec2(below), lessThan(n.xy, vec2(0.0)));
+  return normalize(n);
+}
+
+// Whether a flight can meet no triangle, and ends where none is near.
+bool isFree(InteriorRecord interior, vec3 position, vec3 direction, float flight) {
+  vec3 from;
+  uvec4 clearance = clearanceAt(interior, position, from);
+  float margin = 2.0 * flightMargin(), distance = flight + margin, way = length(from) + distance;
+  if (way < uintBitsToFloat(clearance.w)) return true;
+  vec3 normal = unpackNormal(clearance.x);
+  float height = dot(normal, from);
+  return way < uintBitsToFloat(clearance.z) &&
+         max(height, height + distance * dot(normal, direction)) + margin < uintBitsToFloat(clearance.y);
 }
 #endif
 
-#if WALKS && !MANIFOLDS
-const uint kWalkSteps = 64u;
-
-// Moves from collision to collision as long as `flight`, the last one drawn, ends before it could meet any triangle; no
-// ray is traced for these. Every random number and every sum is that of a path that traces them all. There is no walk
-// where a lamp might be sampled. False: the path ends.
-bool walk(inout Path path, MediumRecord medium, inout float flight, PathNumbers numbers) {
+#if WALKING
+// Whether a path may walk (walk.comp): not where a lamp might be sampled, and only where no triangle is near. A flight
+// that begins behind its origin is traced.
+bool mayWalk(Path path, float flight) {
   int rank = topRank(path.inside);
-  if (rank < 0 || (NEXT_EVENT != 0 && lampsReach(path))) return true;
+  if (rank < 0 || flight < 0.0 || (NEXT_EVENT != 0 && lampsReach(path))) return false;
   InteriorRecord interior = interiors[rank];
-  if (interior.clearance < 0) return true;
-  float margin = 2.0 * flightMargin();
-  if (flight < 0.0) return true;
-  for (uint step = 0u; step < kWalkSteps; ++step) {
-    if (!(flight + margin < clearanceAt(interior, path.origin))) return true;
-    ++loopIterations;
-    numbers.pixel += hiddenZero();
-    numbers.sampleIndex += hiddenZero();
-    weighFlight(path, medium, channelProbabilities(path.throughput), path.head + flight, false, numbers);
-    path.origin += flight * path.direction;
-    if (scatterInMedium(path, medium, vec3(0.0), numbers, false, 0.0) != kScattered) return false;
-    flight = beginFlight(path, medium, numbers);
-  }
-  return true;
+  return interior.clearance >= 0 && isFree(interior, path.origin, path.direction, flight);
 }
 #endif
 
@@ -209,7 +218,7 @@ float seekingProbability(Path path, MediumRecord medium) {
   int rank = topRank(path.inside);
   if (rank >= 0 && interiors[rank].clearance >= 0) {
     InteriorRecord interior = interiors[rank];
-    float least = max(clearanceAt(interior, path.origin), 0.0);
+    float least = max(clearanceRadius(interior, path.origin), 0.0);
     return min(exp(kShallow - least * min(medium.extinction.r, min(medium.extinction.g, medium.extinction.b))), 1.0);
   }
 #endif

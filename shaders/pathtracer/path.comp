@@ -1,7 +1,8 @@
-// Path tracing. One invocation per pixel traces its paths one after the other, segment by segment, until the pixel has
+// Path tracing. An invocation traces the paths of a pixel one after the other, segment by segment, until the pixel has
 // its samples or this submission's budget of loop iterations is used up. An unfinished path then waits in the state
 // buffer. So every submission is bounded however long paths get, and no path is dropped: dropping the long ones would
-// bias the picture.
+// bias the picture. With SHARES_PIXELS an invocation whose pixel is finished takes the next one, so that it does not
+// wait for the longest path beside it.
 //
 // A path: camera ray, then at each surface next-event estimation for one light and a new direction sampled from the
 // BSDF, combined by multiple importance sampling [Veach1997], and Russian roulette. `throughput` omits the squared
@@ -290,7 +291,14 @@ void traceShadowFirst() {
   stage = kTraces;
 }
 
-// kTraces: the ray of the lane's job, and the triangle that it starts on. False: the submission's budget is used up.
+#if SHARES_PIXELS
+bool walks = false;  // the path waits for walk.comp
+#else
+bool hasTaken = false;
+#endif
+
+// kTraces: the ray of the lane's job, and the triangle that it starts on. False: the submission's budget is used up, or
+// the path walks.
 bool setUpRay(inout Path path, PathNumbers numbers, out Ray ray, out uint skip) {
   ray = Ray(vec3(0.0), 0.0, vec3(1.0), 0.0);
   skip = kNoHit;
@@ -307,12 +315,9 @@ bool setUpRay(inout Path path, PathNumbers numbers, out Ray ray, out uint skip) 
     // In a homogeneous medium the flight length is drawn first: short rays are cheap to trace.
     int medium = mediumInside(path.inside);
     flight = medium >= 0 ? beginFlight(path, mediumOf(medium), numbers) : 3e38;
-#if WALKS && !MANIFOLDS
-    if (medium >= 0) {
-      if (!walk(path, mediumOf(medium), flight, numbers)) stage = kEnds;
-      spill(path);
-    }
-    skip = path.skip;
+#if WALKING
+    walks = medium >= 0 && mayWalk(path, flight);
+    if (walks) return false;
 #endif
     ray = Ray(path.origin, 0.0, path.direction, flight + flightMargin());
 #endif
@@ -531,95 +536,124 @@ void forget(inout uint where, inout PathNumbers numbers) {
 #endif
 }
 
-void main() {
-  // The pixel's film, and the path left by the previous dispatch.
-  ivec2 place = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(place, tracer.tile.zw))) return;
-  ivec2 pixel = tracer.tile.xy + place;
-  uint samples = imageLoad(filmMean, pixel).w;
-  if (samples >= tracer.sampleTarget) return;
+void finishPixel() {
+  state[wordAt(4u)].x = kFinished;
+  atomicAdd(finished, 1u);
+}
 
-  // picture.w: index of the film's first sample.
-  PathNumbers numbers = PathNumbers(indexOf(pixel), uint(tracer.picture.w) + samples, tracer.seed);
-  Film film;
-#if !SPILLED
-  film = readFilm(pixel);
-#endif
-  uint where = uint(pixel.x) | uint(pixel.y) << 16u;
-  home = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u * uint(STATE_WORDS) + gl_LocalInvocationIndex;
-  Path path;
-  bool inFlight = true;
-  if (isWaiting()) restorePath(path);
-  else beginPath(path, pixel, numbers);
-  shadow.waits = false;
+// Whether a pixel lacks samples, and its path waits for no other kernel.
+bool isReady(ivec2 pixel) {
+  if (isMarked(kFinished)) return false;
 #if MANIFOLDS
-  if (manifoldStatus() != kManifoldDone) {  // not yet done
-    atomicAdd(unfinished, 1u);
-    return;
+  if (manifoldStatus() != kManifoldDone) return false;
+#endif
+  if (isMarked(kInFlight) || imageLoad(filmMean, pixel).w < tracer.sampleTarget) return true;
+  finishPixel();
+  return false;
+}
+
+// The lane's next pixel. False: there is none.
+bool takePixel(out ivec2 pixel) {
+#if SHARES_PIXELS
+  while (loopIterations < tracer.iterations) {  // ends: by that
+    uint number;
+    if (!takeFrom(turn, number)) return false;
+    bool isInside = findPixel(number, pixel);
+    if (isInside && isReady(pixel)) return true;
+#if MANIFOLDS
+    if (isInside && !isMarked(kFinished)) addTo(1u - turn, number);
+#endif
+    ++loopIterations;
   }
-  if (hasEnded()) inFlight = nextSample(path, film, where, numbers);
+  return false;
+#else
+  uint number = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u + gl_LocalInvocationIndex;
+  bool isFirst = !hasTaken;
+  hasTaken = true;
+  return isFirst && findPixel(number, pixel) && isReady(pixel);
 #endif
+}
 
-#if MANIFOLDS
-  bool waits = false;
-#endif
+void main() {
+  PathNumbers numbers;
+  Film film;
+  Path path;
+  uint where = 0u;
+  bool isTracing = false;
   // One traversal serves all rays, since drivers inline every function: each further call site costs registers and
   // minutes of compiling.
   // ends: each ray of a path adds 4 iterations, up to tracer.iterations; between two of them lie at most 256 boundaries
   // that a shadow ray crosses, with kMostCoincident short rays each
-  while (inFlight) {
+  while (true) {
+    // A pixel's film, and the path left by the previous submission. picture.w: index of the film's first sample.
+    bool inFlight = true;
+    if (!isTracing) {
+      ivec2 pixel;
+      if (!takePixel(pixel)) break;
+      numbers =
+          PathNumbers(indexOf(pixel), uint(tracer.picture.w) + imageLoad(filmMean, pixel).w, tracer.seed);
+#if !SPILLED
+      film = readFilm(pixel);
+#endif
+      where = uint(pixel.x) | uint(pixel.y) << 16u;
+      if (isMarked(kInFlight)) restorePath(path);
+      else beginPath(path, pixel, numbers);
+      shadow.waits = false;
+      isTracing = true;
+#if MANIFOLDS || WALKING
+      if (isMarked(kPathEnded)) inFlight = nextSample(path, film, where, numbers);
+#endif
+    }
     forget(where, numbers);
     stage = kTraces;
     Ray ray;
     uint skip;
-    if (!setUpRay(path, numbers, ray, skip)) break;
-
-    // The only traversal.
-    BvhTraversal traversal = beginRay(ray, skip);
-    if (job == kShadowRay) traversal.lampEnd = ray.tMax;
-    if (job == kCoincidentRay) traversal.slack = -1.0;
-    if (stage == kEnds) traversal.top = -1;
+    bool pauses = false;
+    if (inFlight) pauses = !setUpRay(path, numbers, ray, skip);
+    if (inFlight && !pauses) {
+      // The only traversal.
+      BvhTraversal traversal = beginRay(ray, skip);
+      if (job == kShadowRay) traversal.lampEnd = ray.tMax;
+      if (job == kCoincidentRay) traversal.slack = -1.0;
 #if INTERIORS || SHADOW_AT_ONCE
-    const bool any = false;  // boundaries may let light through
+      const bool any = false;  // boundaries may let light through
 #else
-    bool any = job == kShadowRay;
+      bool any = job == kShadowRay;
 #endif
-    for (int left = bvhNodeCount(); left > 0 && !isDone(traversal); --left) advanceRay(traversal, any);
-    Hit hit = traversal.hit;
-    if (!any) hit = finishRay(traversal, ray.direction);
-    forget(where, numbers);
+      for (int left = bvhNodeCount(); left > 0 && !isDone(traversal); --left) advanceRay(traversal, any);
+      Hit hit = traversal.hit;
+      if (!any) hit = finishRay(traversal, ray.direction);
+      forget(where, numbers);
 
-    useHit(path, ray, hit, numbers);
-    fly(path, numbers);
-    arrive(path, numbers);
+      useHit(path, ray, hit, numbers);
+      fly(path, numbers);
+      arrive(path, numbers);
 #if MANIFOLDS
-    // The path waits for manifold.comp.
-    if ((stage == kContinue || stage == kEnds) && manifoldStatus() != kManifoldDone) {
-      waits = true;
-      break;
-    }
+      // The path waits for manifold.comp.
+      pauses = (stage == kContinue || stage == kEnds) && manifoldStatus() != kManifoldDone;
 #endif
-    inFlight = stage != kEnds || nextSample(path, film, where, numbers);
-  }
+      if (!pauses) inFlight = stage != kEnds || nextSample(path, film, where, numbers);
+    }
+    if (inFlight && !pauses) continue;
 
-  // Store the counters, the film, and the path in flight.
+    // Store the film, and the path in flight.
+    isTracing = false;
+#if !SPILLED
+    writeFilm(pixelAt(where), film, numbers.sampleIndex - uint(tracer.picture.w));
+    if (inFlight) savePath(path);
+#endif
+    if (!inFlight) finishPixel();
+#if MANIFOLDS
+    if (pauses && stage == kEnds) mark(kPathEnded);
+#endif
+#if SHARES_PIXELS
+    if (pauses) addTo(walks ? 2u + turn : 1u - turn, numberOf(home));
+    walks = false;
+#endif
+  }
   atomicMax(longest, loopIterations);
   atomicAdd(allIterations, loopIterations);
 #if MEDIA
   atomicAdd(collisions, collisionCount);
 #endif
-#if !SPILLED
-  writeFilm(pixel, film, numbers.sampleIndex - uint(tracer.picture.w));
-#endif
-  if (inFlight) {
-    atomicAdd(unfinished, 1u);
-#if !SPILLED
-    savePath(path);
-#endif
-#if MANIFOLDS
-    if (waits && stage == kEnds) setEnded();
-#endif
-  } else {
-    state[wordAt(4u)].x = 0u;
-  }
 }

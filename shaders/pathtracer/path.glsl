@@ -4,17 +4,22 @@
 // Flag STATE_WORDS: of a lane in the state buffer. SPILLED, on GPUs: what is not needed while a ray is traced, or in
 // another stage, lies there instead of in registers. reload...() and spill...() do nothing otherwise.
 #define SPILLED (SHARED_STACK > 0)
+#define WALKING (WALKS && !MANIFOLDS && !INSPECTED)
 #include "pathtracer/film_place.glsl"
 
 layout(std430, binding = 5) restrict buffer StateBlock {
-  uint unfinished;      // pixels of the tile that still lack samples
   uint leakedPaths;     // terminated because they were found outside the scene, yet inside a closed boundary
   uint wrongCrossings;  // boundaries left without having been entered: open or flipped meshes
   uint longest;         // most loop iterations of any lane
   // loop iterations of all lanes; below 2^32, since a submission has at most 2^28 plus the last segments
   uint allIterations;
   uint collisions;      // in media, over all lanes
-  uvec4 state[];        // STATE_WORDS a lane: for each group of 64 lanes, word by word
+  uint finished;        // pixels of the tile that have all their samples, since the last submission
+  uint padding0, padding1;
+  uint heads[4], tails[4];  // of the queues
+  // STATE_WORDS a pixel: for each group of 64 pixels, word by word. With SHARES_PIXELS also the queues, one in each
+  // component.
+  uvec4 state[];
 };
 
 struct Path {
@@ -44,8 +49,10 @@ struct Path {
 // of the time; the Cornell box and the atrium 0.7 and 0.8 of it by relative error, 0.84 and 0.91 by squared error.
 const float kRouletteBelow = 0.25;
 
-// In the saved event: a path is waiting to be continued; it has ended, and waits for manifold.comp.
-const uint kInFlight = 0x80000000u, kPathEnded = 0x40000000u, kEventBits = 0x3fffffffu;
+// In the saved event: a path is waiting to be continued; it has ended, and waits for manifold.comp, or in a walk; the
+// pixel has all its samples. 0: the pixel's pass has not begun.
+const uint kInFlight = 0x80000000u, kPathEnded = 0x40000000u, kFinished = 0x20000000u,
+           kEventBits = 0x1fffffffu;
 
 bool counts(uint scatterings) { return scatterings >= tracer.minScatterings && scatterings <= tracer.maxScatterings; }
 
@@ -83,7 +90,7 @@ Path startPath(ivec2 pixel, PathNumbers numbers) {
   return path;
 }
 
-// A lane's words in `state`. The path's are origin, skip; direction, pdf; throughput, travelled; radiance, scatterings
+// A pixel's words in `state`. The path's are origin, skip; direction, pdf; throughput, travelled; radiance, scatterings
 // and chain; event, ior, head, face; and with INTERIORS inside. The others are for SPILLED alone.
 uint home = 0u;
 const uint kShadowWord = INTERIORS != 0 ? 6u : 5u;
@@ -96,10 +103,47 @@ uint wordAt(uint word) { return home + 64u * word; }
 uint hiddenZero() { return SPILLED ? loopIterations >> 31u : 0u; }
 void forgetAddresses() { home += hiddenZero(); }
 
-// Whether a path waits there for its next ray.
-bool isWaiting() { return (state[wordAt(4u)].x & kInFlight) != 0u; }
-bool hasEnded() { return (state[wordAt(4u)].x & kPathEnded) != 0u; }
-void setEnded() { state[wordAt(4u)].x |= kPathEnded; }
+bool isMarked(uint mark) { return (state[wordAt(4u)].x & mark) != 0u; }
+void mark(uint mark) { state[wordAt(4u)].x |= mark; }
+
+// The tile's pixels by number: groups of 8 x 8. False: beyond the tile.
+bool findPixel(uint number, out ivec2 pixel) {
+  uint group = number >> 6u, columns = uint(tracer.tile.z + 7) >> 3u;
+  ivec2 place = ivec2(group % columns * 8u + (number & 7u), group / columns * 8u + (number >> 3u & 7u));
+  home = group * 64u * uint(STATE_WORDS) + (number & 63u);
+  pixel = tracer.tile.xy + place;
+  return all(lessThan(place, tracer.tile.zw));
+}
+
+#if SHARES_PIXELS
+// Queues of the numbers of pixels: 0 and 1 wait for path.comp, 2 and 3 for walk.comp. Of each two, one is emptied in a
+// round, the other one in the next round; what is added to a queue is there for the next kernel.
+uniform uint turn;       // 0 or 1
+uniform uint queueMask;  // their length less 1; a ring has room for all pixels
+uint slotOf(uint place) { return uint(STATE_WORDS) * uint(tracer.picture.z) + (place & queueMask); }
+
+// False: the queue is empty.
+bool takeFrom(uint queue, out uint number) {
+  number = 0u;
+  uint tail = tails[queue];
+  if (heads[queue] == tail) return false;
+  uint place = atomicAdd(heads[queue], 1u);
+  bool isThere = int(tail - place) > 0;
+  if (isThere) number = state[slotOf(place)][queue];
+  else atomicAdd(heads[queue], 0xffffffffu);  // another lane took the last one
+  return isThere;
+}
+
+void addTo(uint queue, uint number) {
+  uint slot = slotOf(atomicAdd(tails[queue], 1u));
+  if (queue == 0u) state[slot].x = number;
+  else if (queue == 1u) state[slot].y = number;
+  else if (queue == 2u) state[slot].z = number;
+  else state[slot].w = number;
+}
+
+uint numberOf(uint home) { return home / (64u * uint(STATE_WORDS)) * 64u + home % (64u * uint(STATE_WORDS)); }
+#endif
 
 void restorePath(out Path path) {
   uvec4 w0 = state[wordAt(0u)], w1 = state[wordAt(1u)], w2 = state[wordAt(2u)], w3 = state[wordAt(3u)],

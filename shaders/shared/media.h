@@ -36,7 +36,7 @@ struct DensityRecord {
 struct InteriorRecord {
   float ior;        // of a dielectric; otherwise unused
   int medium;       // -1: vacuum
-  int clearance;    // index of its clearance grid's first radius; -1: none
+  int clearance;    // index of its clearance grid's first cell; -1: none
   float cell;       // edge of that grid's cells
   vec3 min;         // corner of its first cell
   int padding0;
