@@ -40,7 +40,7 @@ constexpr double kLanesOfTile =
 struct StateHeader {
   std::uint32_t leakedPaths = 0, wrongCrossings = 0, longest = 0, allIterations = 0, collisions = 0;
   std::uint32_t finished = 0, padding[2]{};
-  std::array<std::uint32_t, 4> heads{}, tails{};  ///< of the queues
+  std::array<std::uint32_t, 6> heads{}, tails{};  ///< of the queues
 };
 static_assert(sizeof(StateHeader) % 16 == 0);
 constexpr std::size_t kStateHeaderBytes = sizeof(StateHeader), kVec4Bytes = 16;
@@ -240,7 +240,7 @@ void PathTracer::allocateFilm() {
   constants_.picture = glm::ivec4(settings_.size, static_cast<int>(lanes), 0);
   const std::size_t inspection = settings_.inspectedPixel ? kInspectedWords : 0;
   state_ =
-      gl::Buffer("path state", kStateHeaderBytes + (lanes * stateWords() + queueLength() + inspection) * kVec4Bytes,
+      gl::Buffer("path state", kStateHeaderBytes + (lanes * stateWords() + 2 * queueLength() + inspection) * kVec4Bytes,
                  nullptr, gl::Usage::dynamicCopy);
   filmMean_ = gl::Texture("film mean", gl::Format::rgba32ui, filmSize());
   filmM2_ = gl::Texture("film M2", gl::Format::rgba32ui, filmSize());
@@ -497,7 +497,7 @@ void PathTracer::dropUnfinishedPass() {
 }
 
 bool PathTracer::sharesPixels() const {
-  return !settings_.inspectedPixel && (scene_->rays().sharedStack() == 0 || walks());
+  return !settings_.inspectedPixel && (scene_->rays().sharedStack() == 0 || walks() || !casters_.empty());
 }
 
 std::size_t PathTracer::queueLength() const {
@@ -628,23 +628,31 @@ void PathTracer::dispatch(glm::ivec2 corner, glm::ivec2 size, std::uint32_t targ
   const int unfinished = size.x * size.y - static_cast<int>(finished_),
             groups = sharesPixels() ? (unfinished + kGroupPixels - 1) / kGroupPixels : groupsOf(size);
   for (std::uint32_t round = 0; round < rounds; ++round, turn_ = 1 - turn_) {
-    {
-      const gl::ComputePass pass("path tracing", gl::Barrier::storage | gl::Barrier::image | gl::Barrier::textureFetch,
-                                 gl::Barrier::image);
-      bind(*program_);
-      filmMean_.bindImage(0, gl::Access::readWrite);
-      filmM2_.bindImage(1, gl::Access::readWrite);
-      filmRest_.bindImage(2, gl::Access::readWrite);
-      pass.dispatch(glm::ivec3(kGroupSide * groups, kGroupSide, 1), glm::ivec3(kGroupSide, kGroupSide, 1));
-    }
-    if (!walks()) continue;
-    const gl::ComputePass pass("walks in media", gl::Barrier::storage);
-    bind(*walkProgram_);
-    filmMean_.bindImage(0, gl::Access::read);
-    pass.dispatch(glm::ivec3(kGroupSide * groups, kGroupSide, 1), glm::ivec3(kGroupSide, kGroupSide, 1));
+    tracePaths(groups);
+    if (walks()) walkPaths(groups);
+    if (!casters_.empty()) seekWays(groups);
   }
-  if (casters_.empty()) return;
-  // Light that paths have asked for, through refracting boundaries.
+}
+
+void PathTracer::tracePaths(int groups) {
+  const gl::ComputePass pass("path tracing", gl::Barrier::storage | gl::Barrier::image | gl::Barrier::textureFetch,
+                             gl::Barrier::image);
+  bind(*program_);
+  filmMean_.bindImage(0, gl::Access::readWrite);
+  filmM2_.bindImage(1, gl::Access::readWrite);
+  filmRest_.bindImage(2, gl::Access::readWrite);
+  pass.dispatch(glm::ivec3(kGroupSide * groups, kGroupSide, 1), glm::ivec3(kGroupSide, kGroupSide, 1));
+}
+
+void PathTracer::walkPaths(int groups) {
+  const gl::ComputePass pass("walks in media", gl::Barrier::storage);
+  bind(*walkProgram_);
+  filmMean_.bindImage(0, gl::Access::read);
+  pass.dispatch(glm::ivec3(kGroupSide * groups, kGroupSide, 1), glm::ivec3(kGroupSide, kGroupSide, 1));
+}
+
+// Light that paths have asked for, through refracting boundaries.
+void PathTracer::seekWays(int groups) {
   const gl::ComputePass pass("specular manifolds", gl::Barrier::storage);
   bind(*manifoldProgram_);
   manifoldProgram_->set("casterCount", static_cast<int>(casters_.size()));
@@ -654,7 +662,7 @@ void PathTracer::dispatch(glm::ivec2 corner, glm::ivec2 size, std::uint32_t targ
   }
   casterTriangles_.bind(kCastersUnit);
   filmMean_.bindImage(0, gl::Access::read);
-  pass.dispatch(glm::ivec3(size, 1), glm::ivec3(kGroupSide, kGroupSide, 1));
+  pass.dispatch(glm::ivec3(kGroupSide * groups, kGroupSide, 1), glm::ivec3(kGroupSide, kGroupSide, 1));
 }
 
 std::vector<PathTracer::Pixel> PathTracer::readFilm() const {

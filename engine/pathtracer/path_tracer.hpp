@@ -158,7 +158,7 @@ class PathTracer {
   std::size_t stateWords() const;  // of a lane in state_, in uvec4
   bool hasInteriors() const { return features_.dielectrics || features_.nullBoundaries || features_.media; }
   /// Whether paths walk through dense media in a kernel of their own.
-  bool walks() const { return features_.denseMedia && casters_.empty() && !settings_.inspectedPixel; }
+  bool walks() const { return features_.denseMedia && !settings_.inspectedPixel; }
   /// Whether lanes take pixels from a queue; else each has its own.
   bool sharesPixels() const;
   std::size_t queueLength() const;
@@ -167,6 +167,9 @@ class PathTracer {
   enum class Passes { doubling, whole };
   bool submit(std::uint32_t samples, Passes passes);
   void dispatch(glm::ivec2 corner, glm::ivec2 size, std::uint32_t target);
+  void tracePaths(int groups);  ///< of lanes
+  void walkPaths(int groups);
+  void seekWays(int groups);
   void bind(const gl::Program& program);
   /// Whether lamps are sought by way of refracting boundaries and mirrors.
   bool seeksByManifolds() const;

@@ -199,17 +199,6 @@ bool isFree(InteriorRecord interior, vec3 position, vec3 direction, float flight
 }
 #endif
 
-#if WALKING
-// Whether a path may walk (walk.comp): not where a lamp might be sampled, and only where no triangle is near. A flight
-// that begins behind its origin is traced.
-bool mayWalk(Path path, float flight) {
-  int rank = topRank(path.inside);
-  if (rank < 0 || flight < 0.0 || (NEXT_EVENT != 0 && lampsReach(path))) return false;
-  InteriorRecord interior = interiors[rank];
-  return interior.clearance >= 0 && isFree(interior, path.origin, path.direction, flight);
-}
-#endif
-
 // The probability with which lamps are sought by manifold.comp from a collision: deep inside of a dense body hardly any
 // of their light is left, and the search costs far more than a collision. Optical depths up to kShallow are certain.
 float seekingProbability(Path path, MediumRecord medium) {
@@ -224,6 +213,30 @@ float seekingProbability(Path path, MediumRecord medium) {
 #endif
   return 1.0;
 }
+
+#if WALKING
+// Whether a path may walk (walk.comp): only where its flight can meet no triangle, and not where a lamp might be
+// sampled, or is sought at the flight's end. A flight that begins behind its origin is traced.
+bool mayWalk(InteriorRecord interior, MediumRecord medium, Path path, float flight, PathNumbers numbers) {
+  if (flight < 0.0 || !isFree(interior, path.origin, path.direction, flight)) return false;
+#if MANIFOLDS
+  path.origin += flight * path.direction;
+  ++path.event;
+  ++path.scatterings;
+  return !seeksWay(path, seekingProbability(path, medium), numbers);
+#else
+  return true;
+#endif
+}
+
+// From path.comp.
+bool mayWalk(Path path, float flight, PathNumbers numbers) {
+  int rank = topRank(path.inside);
+  if (rank < 0 || interiors[rank].clearance < 0 || (NEXT_EVENT != 0 && lampsReach(path))) return false;
+  InteriorRecord interior = interiors[rank];
+  return mayWalk(interior, mediumOf(interior.medium), path, flight, numbers);
+}
+#endif
 
 bool arrivesAt(Hit hit, float flight) { return hit.triangle != kNoHit ? hit.t <= flight : flight > 0.5 * kFar; }
 

@@ -352,117 +352,154 @@ vec2 newtonStep(inout Way way, Target target, out float det) {
   return step;
 }
 
-void main() {
-  ivec2 place = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(place, tracer.tile.zw))) return;
-  home = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u * uint(STATE_WORDS) + gl_LocalInvocationIndex;
-  if (manifoldStatus() == kManifoldDone) return;
-  ivec2 pixel = tracer.tile.xy + place;
-  PathNumbers numbers = PathNumbers(uint(pixel.y * tracer.picture.x + pixel.x),
-                                    uint(tracer.picture.w) + imageLoad(filmMean, pixel).w, tracer.seed);
-  ManifoldRequest request = restoreManifold();
-  Target target = drawTarget(numbers, request.event);
-  uvec4 pattern = randomWords(numbers, request.event, kPurposeWay);
-
-  // The vertex, in front of its surface and behind it.
-  vec3 normal = vec3(0.0);
-  Vertex front = Vertex(request.position, request.inside, request.ior), behind = front;
-  bool isOneSided = true;
+// What a request looks for, and from where.
+struct Seeker {
+  Target target;
+  uvec4 pattern;         // which boundaries reflect
+  Vertex front, behind;  // the vertex, in front of its surface and behind it
+  vec3 normal;           // of the surface; 0 in a medium
+  bool isOneSided;
   Bsdf bsdf;
+};
+
+Seeker seekerOf(ManifoldRequest request, PathNumbers numbers) {
+  Seeker seeker;
+  seeker.target = drawTarget(numbers, request.event);
+  seeker.pattern = randomWords(numbers, request.event, kPurposeWay);
+  seeker.normal = vec3(0.0);
+  seeker.front = seeker.behind = Vertex(request.position, request.inside, request.ior);
+  seeker.isOneSided = true;
   if (request.triangle != kNoHit) {
     Surface surface = surfaceAt(request.triangle, request.barycentrics, request.incoming);
     PathMaterial material = materials[surface.material];
 #if NORMAL_MAPS
     applyNormalMap(surface, request.triangle);
 #endif
-    normal = surface.geometricNormal;
-    front.place = beside(surface, normal);
-    behind.place = beside(surface, -normal);
+    seeker.normal = surface.geometricNormal;
+    seeker.front.place = beside(surface, seeker.normal);
+    seeker.behind.place = beside(surface, -seeker.normal);
 #if ROUGH_DIELECTRICS
     int rank = rankOf(request.triangle);
-    isOneSided = material.kind != PATH_DIELECTRIC;
-    if (!isOneSided && rank >= 0) {
-      crossBoundary(behind.inside, rank, surface.front);
-      behind.ior = iorInside(behind.inside);
+    seeker.isOneSided = material.kind != PATH_DIELECTRIC;
+    if (!seeker.isOneSided && rank >= 0) {
+      crossBoundary(seeker.behind.inside, rank, surface.front);
+      seeker.behind.ior = iorInside(seeker.behind.inside);
     }
 #endif
     Path arriving;
     arriving.direction = request.incoming;
     arriving.ior = request.ior;
-    bsdf = bsdfOf(arriving, surface, material, behind.ior);
+    seeker.bsdf = bsdfOf(arriving, surface, material, seeker.behind.ior);
+  }
+  return seeker;
+}
+
+// Follows one way. True: the request is done with.
+bool seek(inout ManifoldRequest request, Seeker seeker, PathNumbers numbers) {
+  bool isOver = false;
+  // Follow a way from the seed, or in the direction to which Newton's method has turned.
+  bool isSurface = seeker.normal != vec3(0.0);
+  if (request.steps == 0u)
+    request.direction = seedDirection(numbers, request, seeker.front.place,
+                                      seeker.isOneSided ? seeker.normal : vec3(0.0), seeker.target);
+  vec3 direction = request.direction, t1, t2;
+  bool isBehind = isSurface && !(dot(direction, seeker.normal) > 0.0);
+  Vertex vertex = isBehind ? seeker.behind : seeker.front;
+  Way way;
+  way.fails = true;
+  way.isSteeper = false;
+  if (!isBehind || !seeker.isOneSided)
+    way = followWay(vertex, request.triangle, request.direction, seeker.target, seeker.pattern, seeker.pattern);
+  if (way.isSteeper && ++request.steps <= kMostSteps) return false;
+  float det = 0.0;
+  if (!way.fails) {
+    vec2 step = newtonStep(way, seeker.target, det);
+    float size = length(step);
+    if (!way.fails && !(size < kStill)) {
+      tangentFrame(direction, t1, t2);
+      step *= min(kMostStep / size, 1.0);
+      request.direction = normalize(direction + step.x * t1 + step.y * t2);
+      way.fails = ++request.steps > kMostSteps;
+      if (!way.fails) return false;
+    }
   }
 
-  bool isOver = false;
-  while (!isOver) {  // ends: each way adds iterations, up to tracer.iterations; the next submission continues
-    if (loopIterations >= tracer.iterations) {
-      saveManifold(request);
-      atomicMax(longest, loopIterations);
-      atomicAdd(allIterations, loopIterations);
-      return;
+  // The seed has led to a way, or to none.
+  request.steps = 0u;
+  bool hasFound = !way.fails && !way.isBlocked;
+  if (request.status == kManifoldFirst) {
+    isOver = !hasFound || !counts(request.scatterings + way.turns);
+    if (isOver) return true;
+    float pdf, ratio = vertex.ior / way.ior;
+    vec3 value = vec3(0.0);
+    if (isSurface) value = evaluate(seeker.bsdf, -request.incoming, direction, pdf);
+#if MEDIA
+    else value = phaseValue(mediumOf(mediumInside(request.inside)), request.incoming, direction);
+#endif
+    Path path;
+    path.throughput = request.throughput;
+    path.ior = vertex.ior;
+    request.contribution =
+        lightOf(path, value * way.through * sentAlong(seeker.target, way.tube.direction) * (ratio * ratio / abs(det)));
+    isOver = !any(greaterThan(request.contribution, vec3(0.0)));
+    request.found = direction;
+    request.status = kManifoldTrials;
+    request.trials = 1u;
+  } else if (hasFound && length(direction - request.found) < kSameWay) {
+    vec3 light = request.contribution * float(request.trials);
+    spillRadiance(spilledRadiance() + light);
+#if INSPECTED
+    Path path;
+    path.scatterings = request.scatterings;
+    noteLight(path, numbers, light, seeker.target.lamp.kind, pickedLight, seeker.front.place, seeker.target.place,
+              seeker.target.infinite);
+#endif
+    isOver = true;
+  } else {
+    ++request.trials;
+  }
+  return isOver;
+}
+
+// The lane's next request. False: there is none.
+bool takeRequest(inout bool hasTaken, out ivec2 pixel) {
+#if SHARES_PIXELS
+  uint number;
+  if (loopIterations >= tracer.iterations || !takeFrom(kSeeking + turn, number)) return false;
+#else
+  uint number = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u + gl_LocalInvocationIndex;
+  if (hasTaken) return false;
+  hasTaken = true;
+#endif
+  return findPixel(number, pixel) && manifoldStatus() != kManifoldDone;
+}
+
+void main() {
+  PathNumbers numbers;
+  ManifoldRequest request;
+  Seeker seeker;
+  bool isSeeking = false, hasTaken = false;
+  while (true) {  // ends: each way adds iterations, up to tracer.iterations; the next submission continues
+    if (!isSeeking) {
+      ivec2 pixel;
+      if (!takeRequest(hasTaken, pixel)) break;
+      numbers = PathNumbers(uint(pixel.y * tracer.picture.x + pixel.x),
+                            uint(tracer.picture.w) + imageLoad(filmMean, pixel).w, tracer.seed);
+      request = restoreManifold();
+      seeker = seekerOf(request, numbers);
+      isSeeking = true;
     }
     loopIterations += 4u;
-    // Follow a way from the seed, or in the direction to which Newton's method has turned.
-    bool isSurface = normal != vec3(0.0);
-    if (request.steps == 0u)
-      request.direction = seedDirection(numbers, request, front.place, isOneSided ? normal : vec3(0.0), target);
-    vec3 direction = request.direction, t1, t2;
-    bool isBehind = isSurface && !(dot(direction, normal) > 0.0);
-    Vertex vertex = isBehind ? behind : front;
-    Way way;
-    way.fails = true;
-    way.isSteeper = false;
-    if (!isBehind || !isOneSided)
-      way = followWay(vertex, request.triangle, request.direction, target, pattern, pattern);
-    if (way.isSteeper && ++request.steps <= kMostSteps) continue;
-    float det = 0.0;
-    if (!way.fails) {
-      vec2 step = newtonStep(way, target, det);
-      float size = length(step);
-      if (!way.fails && !(size < kStill)) {
-        tangentFrame(direction, t1, t2);
-        step *= min(kMostStep / size, 1.0);
-        request.direction = normalize(direction + step.x * t1 + step.y * t2);
-        way.fails = ++request.steps > kMostSteps;
-        if (!way.fails) continue;
-      }
-    }
-
-    // The seed has led to a way, or to none.
-    request.steps = 0u;
-    bool hasFound = !way.fails && !way.isBlocked;
-    if (request.status == kManifoldFirst) {
-      isOver = !hasFound || !counts(request.scatterings + way.turns);
-      if (isOver) break;
-      float pdf, ratio = vertex.ior / way.ior;
-      vec3 value = vec3(0.0);
-      if (isSurface) value = evaluate(bsdf, -request.incoming, direction, pdf);
-#if MEDIA
-      else value = phaseValue(mediumOf(mediumInside(request.inside)), request.incoming, direction);
+    bool isOver = seek(request, seeker, numbers);
+    if (!isOver && loopIterations < tracer.iterations) continue;
+    if (isOver) request.status = kManifoldDone;
+    saveManifold(request);
+#if SHARES_PIXELS
+    addTo((isOver ? kReady : kSeeking) + 1u - turn, numberOf(home));
 #endif
-      Path path;
-      path.throughput = request.throughput;
-      path.ior = vertex.ior;
-      request.contribution =
-          lightOf(path, value * way.through * sentAlong(target, way.tube.direction) * (ratio * ratio / abs(det)));
-      isOver = !any(greaterThan(request.contribution, vec3(0.0)));
-      request.found = direction;
-      request.status = kManifoldTrials;
-      request.trials = 1u;
-    } else if (hasFound && length(direction - request.found) < kSameWay) {
-      vec3 light = request.contribution * float(request.trials);
-      spillRadiance(spilledRadiance() + light);
-#if INSPECTED
-      Path path;
-      path.scatterings = request.scatterings;
-      noteLight(path, numbers, light, target.lamp.kind, pickedLight, front.place, target.place, target.infinite);
-#endif
-      isOver = true;
-    } else {
-      ++request.trials;
-    }
+    isSeeking = false;
+    if (!isOver) break;
   }
-  request.status = kManifoldDone;
-  saveManifold(request);
   atomicMax(longest, loopIterations);
   atomicAdd(allIterations, loopIterations);
 }

@@ -46,14 +46,19 @@ void saveManifold(ManifoldRequest r) {
   state[wordAt(kManifoldWord + 7u)] = uvec4(floatBitsToUint(r.direction), 0u);
 }
 
-// Writes down a path's request at its current vertex, before it scatters there. Only lamps that rays never find are
+// Whether a path seeks a lamp at its current vertex, before it scatters there. Only lamps that rays never find are
 // sought: points, spots and the sun.
-void requestManifold(Path path, uint triangle, vec2 barycentrics, float probability, PathNumbers numbers) {
-  uint kind = lights[pick(randomWords(numbers, path.event, kPurposePick))].kind;
-  if (kind == PATH_LIGHT_TRIANGLE || kind == PATH_LIGHT_ENVIRONMENT || path.scatterings + 1u > tracer.maxScatterings ||
-      path.throughput == vec3(0.0) ||
+bool seeksWay(Path path, float probability, PathNumbers numbers) {
+  if (path.scatterings + 1u > tracer.maxScatterings || path.throughput == vec3(0.0) ||
       !(unitFloat(randomWords(numbers, path.event, kPurposeWay).w) < probability))
-    return;
+    return false;
+  uint kind = lights[pick(randomWords(numbers, path.event, kPurposePick))].kind;
+  return kind != PATH_LIGHT_TRIANGLE && kind != PATH_LIGHT_ENVIRONMENT;
+}
+
+// Writes down its request.
+void requestManifold(Path path, uint triangle, vec2 barycentrics, float probability, PathNumbers numbers) {
+  if (!seeksWay(path, probability, numbers)) return;
 #if INTERIORS
   uvec4 inside = path.inside;
 #else

@@ -292,7 +292,7 @@ void traceShadowFirst() {
 }
 
 #if SHARES_PIXELS
-bool walks = false;  // the path waits for walk.comp
+uint waitsIn = kReady + 1u - turn;  // the queue of a path that pauses
 #else
 bool hasTaken = false;
 #endif
@@ -316,8 +316,10 @@ bool setUpRay(inout Path path, PathNumbers numbers, out Ray ray, out uint skip) 
     int medium = mediumInside(path.inside);
     flight = medium >= 0 ? beginFlight(path, mediumOf(medium), numbers) : 3e38;
 #if WALKING
-    walks = medium >= 0 && mayWalk(path, flight);
-    if (walks) return false;
+    if (medium >= 0 && mayWalk(path, flight, numbers)) {
+      waitsIn = kWalking + turn;
+      return false;
+    }
 #endif
     ray = Ray(path.origin, 0.0, path.direction, flight + flightMargin());
 #endif
@@ -544,7 +546,7 @@ void finishPixel() {
 // Whether a pixel lacks samples, and its path waits for no other kernel.
 bool isReady(ivec2 pixel) {
   if (isMarked(kFinished)) return false;
-#if MANIFOLDS
+#if MANIFOLDS && !SHARES_PIXELS
   if (manifoldStatus() != kManifoldDone) return false;
 #endif
   if (isMarked(kInFlight) || imageLoad(filmMean, pixel).w < tracer.sampleTarget) return true;
@@ -557,12 +559,8 @@ bool takePixel(out ivec2 pixel) {
 #if SHARES_PIXELS
   while (loopIterations < tracer.iterations) {  // ends: by that
     uint number;
-    if (!takeFrom(turn, number)) return false;
-    bool isInside = findPixel(number, pixel);
-    if (isInside && isReady(pixel)) return true;
-#if MANIFOLDS
-    if (isInside && !isMarked(kFinished)) addTo(1u - turn, number);
-#endif
+    if (!takeFrom(kReady + turn, number)) return false;
+    if (findPixel(number, pixel) && isReady(pixel)) return true;
     ++loopIterations;
   }
   return false;
@@ -631,6 +629,9 @@ void main() {
 #if MANIFOLDS
       // The path waits for manifold.comp.
       pauses = (stage == kContinue || stage == kEnds) && manifoldStatus() != kManifoldDone;
+#if SHARES_PIXELS
+      if (pauses) waitsIn = kSeeking + turn;
+#endif
 #endif
       if (!pauses) inFlight = stage != kEnds || nextSample(path, film, where, numbers);
     }
@@ -647,8 +648,8 @@ void main() {
     if (pauses && stage == kEnds) mark(kPathEnded);
 #endif
 #if SHARES_PIXELS
-    if (pauses) addTo(walks ? 2u + turn : 1u - turn, numberOf(home));
-    walks = false;
+    if (pauses) addTo(waitsIn, numberOf(home));
+    waitsIn = kReady + 1u - turn;
 #endif
   }
   atomicMax(longest, loopIterations);

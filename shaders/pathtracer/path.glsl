@@ -4,7 +4,7 @@
 // Flag STATE_WORDS: of a lane in the state buffer. SPILLED, on GPUs: what is not needed while a ray is traced, or in
 // another stage, lies there instead of in registers. reload...() and spill...() do nothing otherwise.
 #define SPILLED (SHARED_STACK > 0)
-#define WALKING (WALKS && !MANIFOLDS && !INSPECTED)
+#define WALKING (WALKS && !INSPECTED)
 #include "pathtracer/film_place.glsl"
 
 layout(std430, binding = 5) restrict buffer StateBlock {
@@ -16,7 +16,7 @@ layout(std430, binding = 5) restrict buffer StateBlock {
   uint collisions;      // in media, over all lanes
   uint finished;        // pixels of the tile that have all their samples, since the last submission
   uint padding0, padding1;
-  uint heads[4], tails[4];  // of the queues
+  uint heads[6], tails[6];  // of the queues
   // STATE_WORDS a pixel: for each group of 64 pixels, word by word. With SHARES_PIXELS also the queues, one in each
   // component.
   uvec4 state[];
@@ -116,11 +116,15 @@ bool findPixel(uint number, out ivec2 pixel) {
 }
 
 #if SHARES_PIXELS
-// Queues of the numbers of pixels: 0 and 1 wait for path.comp, 2 and 3 for walk.comp. Of each two, one is emptied in a
-// round, the other one in the next round; what is added to a queue is there for the next kernel.
+// Queues of the numbers of pixels: 0 and 1 wait for path.comp, 2 and 3 for walk.comp, 4 and 5 for manifold.comp. Of
+// each two, one is emptied in a round, the other one in the next round; what is added to a queue is there for the next
+// kernel.
+const uint kReady = 0u, kWalking = 2u, kSeeking = 4u;
 uniform uint turn;       // 0 or 1
 uniform uint queueMask;  // their length less 1; a ring has room for all pixels
-uint slotOf(uint place) { return uint(STATE_WORDS) * uint(tracer.picture.z) + (place & queueMask); }
+uint slotOf(uint queue, uint place) {
+  return uint(STATE_WORDS) * uint(tracer.picture.z) + (queue >> 2u) * (queueMask + 1u) + (place & queueMask);
+}
 
 // False: the queue is empty.
 bool takeFrom(uint queue, out uint number) {
@@ -129,16 +133,16 @@ bool takeFrom(uint queue, out uint number) {
   if (heads[queue] == tail) return false;
   uint place = atomicAdd(heads[queue], 1u);
   bool isThere = int(tail - place) > 0;
-  if (isThere) number = state[slotOf(place)][queue];
+  if (isThere) number = state[slotOf(queue, place)][queue & 3u];
   else atomicAdd(heads[queue], 0xffffffffu);  // another lane took the last one
   return isThere;
 }
 
 void addTo(uint queue, uint number) {
-  uint slot = slotOf(atomicAdd(tails[queue], 1u));
-  if (queue == 0u) state[slot].x = number;
-  else if (queue == 1u) state[slot].y = number;
-  else if (queue == 2u) state[slot].z = number;
+  uint slot = slotOf(queue, atomicAdd(tails[queue], 1u)), component = queue & 3u;
+  if (component == 0u) state[slot].x = number;
+  else if (component == 1u) state[slot].y = number;
+  else if (component == 2u) state[slot].z = number;
   else state[slot].w = number;
 }
 

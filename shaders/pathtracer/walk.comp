@@ -18,6 +18,9 @@ layout(std140, binding = 0) uniform PathBlock { PathConstants tracer; };
 uint collisionCount = 0u;  // of this lane, in this submission
 #include "pathtracer/shadow_ray.glsl"
 #include "pathtracer/crossing.glsl"
+#if MANIFOLDS
+#include "pathtracer/manifold_request.glsl"
+#endif
 #include "pathtracer/flight.glsl"
 
 layout(rgba32ui, binding = 0) readonly uniform uimage2D filmMean;  // w: number of samples
@@ -27,7 +30,7 @@ const uint kAtOnce = 8u;
 bool takeWalk(out PathNumbers numbers) {
   uint number;
   ivec2 pixel;
-  if (loopIterations >= tracer.iterations || !takeFrom(2u + turn, number)) return false;
+  if (loopIterations >= tracer.iterations || !takeFrom(kWalking + turn, number)) return false;
   findPixel(number, pixel);
   numbers = PathNumbers(uint(pixel.y * tracer.picture.x + pixel.x),
                         uint(tracer.picture.w) + imageLoad(filmMean, pixel).w, tracer.seed);
@@ -58,12 +61,12 @@ void main() {
       path.origin += flight * path.direction;
       ends = scatterInMedium(path, medium, vec3(0.0), numbers, false, 0.0) != kScattered;
       if (!ends) flight = beginFlight(path, medium, numbers);
-      walks = !ends && isFree(interior, path.origin, path.direction, flight);
+      walks = !ends && mayWalk(interior, medium, path, flight, numbers);
     }
     if (walks && loopIterations < tracer.iterations) continue;
     spillPath(path);
     if (ends) mark(kPathEnded);
-    addTo(walks ? 3u - turn : 1u - turn, numberOf(home));
+    addTo((walks ? kWalking : kReady) + 1u - turn, numberOf(home));
     walks = false;
   }
   atomicAdd(allIterations, loopIterations);

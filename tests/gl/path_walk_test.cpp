@@ -103,6 +103,28 @@ TEST_F(PathWalkTest, WalksAreThePathsThatTraceEveryFlight) {
   }
 }
 
+TEST_F(PathWalkTest, WalksWhereLampsAreSoughtAreThePathsThatTraceEveryFlight) {
+  // A lamp without size and the sun are sought from collisions near the boundary. A pixel that is inspected traces
+  // every flight.
+  Scene scene = milkBall(1.33);
+  scene.points.push_back({{0.0, 3.0, 3.0}, glm::vec3(9.0f)});
+  scene.sun = DirectionalLight{glm::normalize(glm::dvec3(-1.0, -2.0, -1.0)), glm::vec3(2.0f)};
+  PathTracer::Settings settings;
+  settings.size = {24, 24};
+  PathTracer walking(context(), library(), scene, settings);
+  walking.record(4);
+  EXPECT_GT(walking.statistics().collisions, 1000.0);
+  for (const glm::ivec2& pixel : {glm::ivec2(12, 12), glm::ivec2(9, 14), glm::ivec2(14, 8)}) {
+    settings.inspectedPixel = pixel;
+    PathTracer tracing(context(), library(), scene, settings);
+    tracing.record(4);
+    const int row = settings.size.y - 1 - pixel.y;
+    const glm::vec3 a = walking.mean().at(pixel.x, row), b = tracing.mean().at(pixel.x, row);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(a[c], b[c], 1e-4f * (1.0f + b[c])) << pixel.x;
+    EXPECT_GT(b.y, 0.0f);
+  }
+}
+
 TEST_F(PathWalkTest, PicturesDoNotDependOnHowSubmissionsAndQueuesDivideThem) {
   // Also of another size than a tile's groups, by passes that double, and continued from a checkpoint.
   const Scene scene = milkBall(1.33);
