@@ -64,7 +64,11 @@ void main() {
       walks = !ends && mayWalk(interior, medium, path, flight, numbers);
     }
     if (walks && loopIterations < tracer.iterations) continue;
+#if SPILLED
     spillPath(path);
+#else
+    savePath(path);  // with what the medium has emitted
+#endif
     if (ends) mark(kPathEnded);
     addTo((walks ? kWalking : kReady) + 1u - turn, numberOf(home));
     walks = false;
