@@ -48,9 +48,10 @@ class Filler {
       clearance.radius = static_cast<float>(nearest * (1.0 - 1e-6));
       return;
     }
+    const double reach = std::max(nearest + diameter, farthest() + 0.5 * diameter);
     std::vector<int> kept;
     for (const Near& one : near)
-      if (one.distance <= std::max(nearest + diameter, farthest() + 0.5 * diameter)) kept.push_back(one.triangle);
+      if (one.distance <= reach) kept.push_back(one.triangle);
     std::vector<std::future<void>> parts;
     for (int k = 0; k < 8; ++k) {
       const glm::ivec3 child = first + side / 2 * glm::ivec3(k & 1, k >> 1 & 1, k >> 2);

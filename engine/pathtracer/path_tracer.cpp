@@ -335,7 +335,7 @@ void PathTracer::addClearances(const Scene& scene) {
     const glm::dvec3 extinction = glm::dvec3(medium.scattering) + glm::dvec3(medium.absorption);
     const ClearanceGrid grid =
         clearanceGrid(triangles, isBoundary, bounds[rank].min - scene_->origin(), bounds[rank].max - scene_->origin(),
-                      kClearanceCells, 1.0 / std::max(std::max(extinction.x, extinction.y), extinction.z));
+                      kClearanceCells, 1.0 / std::max({extinction.x, extinction.y, extinction.z}));
     interior.clearance = static_cast<int>(clearances.size());
     interior.cell = static_cast<float>(grid.cell);
     interior.min = glm::vec3(grid.min);

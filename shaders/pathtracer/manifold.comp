@@ -462,15 +462,9 @@ bool seek(inout ManifoldRequest request, Seeker seeker, PathNumbers numbers) {
 }
 
 // The lane's next request. False: there is none.
-bool takeRequest(inout bool hasTaken, out ivec2 pixel) {
-#if SHARES_PIXELS
+bool takeRequest(out ivec2 pixel) {
   uint number;
   if (loopIterations >= tracer.iterations || !takeFrom(kSeeking + turn, number)) return false;
-#else
-  uint number = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u + gl_LocalInvocationIndex;
-  if (hasTaken) return false;
-  hasTaken = true;
-#endif
   return findPixel(number, pixel) && manifoldStatus() != kManifoldDone;
 }
 
@@ -478,13 +472,12 @@ void main() {
   PathNumbers numbers;
   ManifoldRequest request;
   Seeker seeker;
-  bool isSeeking = false, hasTaken = false;
+  bool isSeeking = false;
   while (true) {  // ends: each way adds iterations, up to tracer.iterations; the next submission continues
     if (!isSeeking) {
       ivec2 pixel;
-      if (!takeRequest(hasTaken, pixel)) break;
-      numbers = PathNumbers(uint(pixel.y * tracer.picture.x + pixel.x),
-                            uint(tracer.picture.w) + imageLoad(filmMean, pixel).w, tracer.seed);
+      if (!takeRequest(pixel)) break;
+      numbers = numbersOf(pixel, imageLoad(filmMean, pixel).w);
       request = restoreManifold();
       seeker = seekerOf(request, numbers);
       isSeeking = true;
@@ -494,9 +487,7 @@ void main() {
     if (!isOver && loopIterations < tracer.iterations) continue;
     if (isOver) request.status = kManifoldDone;
     saveManifold(request);
-#if SHARES_PIXELS
     addTo((isOver ? kReady : kSeeking) + 1u - turn, numberOf(home));
-#endif
     isSeeking = false;
     if (!isOver) break;
   }

@@ -251,7 +251,6 @@ void addSample(inout Film film, vec3 radiance, uint samples) {
 }
 
 ivec2 pixelAt(uint where) { return ivec2(where & 0xffffu, where >> 16u); }
-uint indexOf(ivec2 pixel) { return uint(pixel.y * tracer.picture.x + pixel.x); }
 
 // What a lane does. Its job is the kind of ray that it traces, its stage what it does next. Within an iteration of the
 // loop in main() each stage follows from those above it:
@@ -291,11 +290,7 @@ void traceShadowFirst() {
   stage = kTraces;
 }
 
-#if SHARES_PIXELS
 uint waitsIn = kReady + 1u - turn;  // the queue of a path that pauses
-#else
-bool hasTaken = false;
-#endif
 
 // kTraces: the ray of the lane's job, and the triangle that it starts on. False: the submission's budget is used up, or
 // the path walks.
@@ -546,7 +541,7 @@ void finishPixel() {
 // Whether a pixel lacks samples, and its path waits for no other kernel.
 bool isReady(ivec2 pixel) {
   if (isMarked(kFinished)) return false;
-#if MANIFOLDS && !SHARES_PIXELS
+#if MANIFOLDS
   if (manifoldStatus() != kManifoldDone) return false;
 #endif
   if (isMarked(kInFlight) || imageLoad(filmMean, pixel).w < tracer.sampleTarget) return true;
@@ -556,7 +551,6 @@ bool isReady(ivec2 pixel) {
 
 // The lane's next pixel. False: there is none.
 bool takePixel(out ivec2 pixel) {
-#if SHARES_PIXELS
   while (loopIterations < tracer.iterations) {  // ends: by that
     uint number;
     if (!takeFrom(kReady + turn, number)) return false;
@@ -564,12 +558,6 @@ bool takePixel(out ivec2 pixel) {
     ++loopIterations;
   }
   return false;
-#else
-  uint number = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u + gl_LocalInvocationIndex;
-  bool isFirst = !hasTaken;
-  hasTaken = true;
-  return isFirst && findPixel(number, pixel) && isReady(pixel);
-#endif
 }
 
 void main() {
@@ -583,13 +571,12 @@ void main() {
   // ends: each ray of a path adds 4 iterations, up to tracer.iterations; between two of them lie at most 256 boundaries
   // that a shadow ray crosses, with kMostCoincident short rays each
   while (true) {
-    // A pixel's film, and the path left by the previous submission. picture.w: index of the film's first sample.
+    // A pixel's film, and the path left by the previous submission.
     bool inFlight = true;
     if (!isTracing) {
       ivec2 pixel;
       if (!takePixel(pixel)) break;
-      numbers =
-          PathNumbers(indexOf(pixel), uint(tracer.picture.w) + imageLoad(filmMean, pixel).w, tracer.seed);
+      numbers = numbersOf(pixel, imageLoad(filmMean, pixel).w);
 #if !SPILLED
       film = readFilm(pixel);
 #endif
@@ -629,9 +616,7 @@ void main() {
 #if MANIFOLDS
       // The path waits for manifold.comp.
       pauses = (stage == kContinue || stage == kEnds) && manifoldStatus() != kManifoldDone;
-#if SHARES_PIXELS
       if (pauses) waitsIn = kSeeking + turn;
-#endif
 #endif
       if (!pauses) inFlight = stage != kEnds || nextSample(path, film, where, numbers);
     }
@@ -647,10 +632,8 @@ void main() {
 #if MANIFOLDS
     if (pauses && stage == kEnds) mark(kPathEnded);
 #endif
-#if SHARES_PIXELS
     if (pauses) addTo(waitsIn, numberOf(home));
     waitsIn = kReady + 1u - turn;
-#endif
   }
   atomicMax(longest, loopIterations);
   atomicAdd(allIterations, loopIterations);

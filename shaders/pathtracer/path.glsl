@@ -4,7 +4,7 @@
 // Flag STATE_WORDS: of a lane in the state buffer. SPILLED, on GPUs: what is not needed while a ray is traced, or in
 // another stage, lies there instead of in registers. reload...() and spill...() do nothing otherwise.
 #define SPILLED (SHARED_STACK > 0)
-#define WALKING (WALKS && !INSPECTED)
+#define WALKING (WALKS && !INSPECTED)  // in walk.comp; an inspected pixel traces every flight
 #include "pathtracer/film_place.glsl"
 
 layout(std430, binding = 5) restrict buffer StateBlock {
@@ -115,11 +115,17 @@ bool findPixel(uint number, out ivec2 pixel) {
   return all(lessThan(place, tracer.tile.zw));
 }
 
-#if SHARES_PIXELS
+// The random numbers of a pixel's next sample, after `samples`. picture.w: index of the film's first sample.
+uint indexOf(ivec2 pixel) { return uint(pixel.y * tracer.picture.x + pixel.x); }
+PathNumbers numbersOf(ivec2 pixel, uint samples) {
+  return PathNumbers(indexOf(pixel), uint(tracer.picture.w) + samples, tracer.seed);
+}
+
 // Queues of the numbers of pixels: 0 and 1 wait for path.comp, 2 and 3 for walk.comp, 4 and 5 for manifold.comp. Of
 // each two, one is emptied in a round, the other one in the next round; what is added to a queue is there for the next
 // kernel.
 const uint kReady = 0u, kWalking = 2u, kSeeking = 4u;
+#if SHARES_PIXELS
 uniform uint turn;       // 0 or 1
 uniform uint queueMask;  // their length less 1; a ring has room for all pixels
 uint slotOf(uint queue, uint place) {
@@ -146,8 +152,21 @@ void addTo(uint queue, uint number) {
   else state[slot].w = number;
 }
 
-uint numberOf(uint home) { return home / (64u * uint(STATE_WORDS)) * 64u + home % (64u * uint(STATE_WORDS)); }
+#else
+// Each lane has a pixel of its own, which it takes once.
+const uint turn = 0u;
+bool hasTaken = false;
+bool takeFrom(uint queue, out uint number) {
+  number = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u + gl_LocalInvocationIndex;
+  bool isFirst = !hasTaken;
+  hasTaken = true;
+  return isFirst;
+}
+
+void addTo(uint queue, uint number) {}
 #endif
+
+uint numberOf(uint home) { return home / (64u * uint(STATE_WORDS)) * 64u + home % (64u * uint(STATE_WORDS)); }
 
 void restorePath(out Path path) {
   uvec4 w0 = state[wordAt(0u)], w1 = state[wordAt(1u)], w2 = state[wordAt(2u)], w3 = state[wordAt(3u)],

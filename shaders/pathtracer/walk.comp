@@ -1,7 +1,7 @@
 // Walks through dense media: paths move from collision to collision as long as no triangle can be met, and no ray is
-// traced for these. Every random number and every sum is that of a path that traces them all. The longest walks have a
-// hundred times the collisions of most, so each lane takes the next path from a queue when its own has arrived; in
-// path.comp most lanes would wait.
+// traced for these. Every random number is that of a path that traces them all, and every sum up to rounding. The
+// longest walks have a hundred times the collisions of most, so each lane takes the next path from a queue when its own
+// has arrived; in path.comp most lanes would wait.
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "shared/path_tracer.h"
 layout(std140, binding = 0) uniform PathBlock { PathConstants tracer; };
@@ -32,8 +32,7 @@ bool takeWalk(out PathNumbers numbers) {
   ivec2 pixel;
   if (loopIterations >= tracer.iterations || !takeFrom(kWalking + turn, number)) return false;
   findPixel(number, pixel);
-  numbers = PathNumbers(uint(pixel.y * tracer.picture.x + pixel.x),
-                        uint(tracer.picture.w) + imageLoad(filmMean, pixel).w, tracer.seed);
+  numbers = numbersOf(pixel, imageLoad(filmMean, pixel).w);
   return true;
 }
 
