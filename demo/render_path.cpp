@@ -193,7 +193,7 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   bool stopped = false;
   // Also save within a step, since steps grow to hours.
   const auto saveNowAndThen = [&] {
-    if (path.checkpoint.empty() || elapsed() <= saved + path.saveEvery) return;
+    if (path.checkpoint.empty() || !tracer.hasSamples() || elapsed() <= saved + path.saveEvery) return;
     try {
       save();
     } catch (const Error& error) { logWarning("--checkpoint {}; rendering continues without it", error.what()); }

@@ -122,6 +122,8 @@ class PathTracer {
   Image mean() const;  ///< radiance, linear, scene units, top row first; pixels without a sample are 0
   Image standardError() const;  ///< of each pixel's mean; 0 below 2 samples
   Statistics statistics() const;
+  /// Whether a tile has samples that a checkpoint would keep.
+  bool hasSamples() const { return done_ > 0 || tile_ > 0; }
   /// The film without the unfinished pass, and its identity; resume() continues from it to the same picture, bit by
   /// bit.
   std::vector<std::uint8_t> checkpoint() const;
