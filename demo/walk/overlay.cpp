@@ -27,7 +27,7 @@ void Overlay::drawGlyphs(const Frame& frame) {
   const std::string are =
       fmt::format("{} {} {} {} {} {} {} {}", static_cast<int>(state_.glyphs), side.builtAs, state_.glyphCascade,
                   state_.glyphLevel, state_.glyphMost, cameraText(*state_.scene, camera), state_.shown,
-                  state_.glyphs == Glyphs::records && cache ? cache->frame() : 0);
+                  state_.glyphs == Glyphs::records && cache ? cache->nextFrame() : 0);
   if (state_.glyphs != Glyphs::boxes) bvh_.reset();
   else if (!bvh_ || bvhOf_ != state_.sceneVersion) bvh_ = buildBvh(*state_.scene), bvhOf_ = state_.sceneVersion;
   if (bvh_ && are != glyphsAre_) glyphs_ = boxesOf(*bvh_, side.renderer->origin(), state_.glyphLevel, state_.glyphMost);

@@ -53,12 +53,15 @@ GpuScene::GpuScene(const Scene& scene, const SceneFeatures& features, const gl::
                    const GpuSceneSettings& settings)
     : scene_(&scene), features_(features), isSoftware_(capabilities.softwareRenderer) {
   gl::Sampling sampling{settings.mipmaps ? gl::Filter::linearMipmaps : gl::Filter::linear, gl::Filter::linear};
-  // Each of n samples covers 1 / sqrt(n) of a pixel's width.
-  sampling.bias = -0.5f * std::log2(static_cast<float>(settings.pixelSamples));
+  // Each of n samples covers 1 / sqrt(n) of a pixel's width, so that samples alone filter pixels whose sides on the
+  // texture differ by as much.
+  const float samplesAcross = std::sqrt(static_cast<float>(settings.pixelSamples));
+  sampling.bias = -std::log2(samplesAcross);
   // Without mipmaps a software renderer reads every texel below a pixel, thousands where the picture is small.
   const bool anisotropic = capabilities.anisotropicFilter && settings.mipmaps;
   const gl::Sampling isotropic = sampling;
-  sampling.anisotropy = anisotropic ? std::min(settings.anisotropy, capabilities.maxAnisotropy) : 1.0f;
+  if (anisotropic)
+    sampling.anisotropy = std::max(std::min(settings.anisotropy, capabilities.maxAnisotropy) / samplesAcross, 1.0f);
 
   struct Use {
     const char* name;

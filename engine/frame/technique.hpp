@@ -37,6 +37,9 @@ class FrameTechnique {
   virtual bool follow(const SceneChange&) { return false; }
 
   // Each frame.
+  /// Before record(), for a picture of several samples: what another one of them shows, so that light is found for all
+  /// of them at once.
+  virtual void see(gl::TimeQuery&, const FrameView&) {}
   /// Passes before shading. Returns whether depth was drawn.
   virtual bool record(gl::TimeQuery&, const FrameView&, FrameEffort) { return false; }
   /// Binds what the surface shader reads.

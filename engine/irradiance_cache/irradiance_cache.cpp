@@ -191,7 +191,7 @@ void IrradianceCache::place(const Inputs& inputs) {
   for (std::size_t k = 0; k < inputs.cascades.size(); ++k)
     constants.firstCell[k] = glm::ivec4(glm::ivec3(inputs.cascades[k].firstCell), 0);
   constants.rayOrigin = glm::vec3(rayOrigin_);
-  constants.frame = ++frame_;
+  constants.frame = frame_ = nextFrame();
   constants.capacity = static_cast<std::uint32_t>(capacity_);
   constants.mostSegments =
       std::min(path_.maxScatterings,
@@ -208,7 +208,11 @@ void IrradianceCache::place(const Inputs& inputs) {
       std::min(static_cast<std::size_t>(last - emissiveBodies_.begin()), std::size_t{CACHE_MOST_SMALL_LAMPS}));
   std::copy_n(emissiveBodies_.begin(), constants.smallLamps, std::begin(constants.smallLamp));
   constants_.upload(0, sizeof constants, &constants);
+  show(inputs);
+}
 
+void IrradianceCache::show(const Inputs& inputs) {
+  const glm::ivec2 size = inputs.visible.size();
   setView(path_, inputs.camera, rayOrigin_, size, inputs.offset);
   path_.picture = glm::ivec4(size, 0, 0);
   pathConstants_.upload(0, sizeof path_, &path_);
@@ -265,8 +269,14 @@ void IrradianceCache::mark(const Inputs& inputs) {
   const glm::ivec2 picture = inputs.visible.size();
   const int rowsOfPrefetch = inputs.fades ? (settings_.prefetch + picture.x - 1) / picture.x : 0;
   const glm::ivec3 size(picture.x, picture.y + rowsOfPrefetch, 1), group(8, 8, 1);
+  const std::size_t bytes = static_cast<std::size_t>(size.x * size.y) * sizeof(GLuint);
+  if (claiming_.bytes() < bytes)
+    claiming_ = gl::Buffer("cache pixels that claim", bytes, nullptr, gl::Usage::dynamicCopy);
+  const std::array<GLuint, kWorkWords> none = noWork();
+  work_[0].upload(kClaimGroups * sizeof(GLuint), (kWorkWords - kClaimGroups) * sizeof(GLuint), &none[kClaimGroups]);
   {
-    const gl::ComputePass pass("cache mark records", gl::Barrier::storage | gl::Barrier::textureFetch);
+    const gl::ComputePass pass("cache mark records",
+                               gl::Barrier::storage | gl::Barrier::textureFetch | gl::Barrier::command);
     mark_->use();
     bindRecords();
     inputs.visible.bind(*mark_, inputs.worldFromClip);
@@ -274,6 +284,7 @@ void IrradianceCache::mark(const Inputs& inputs) {
     seen_.buffer().bindStorage(CACHE_SEEN_BUFFER);
     keys_.buffer().bindStorage(CACHE_KEYS_BUFFER);
     prefetchPoints_.bindStorage(CACHE_PREFETCH_BUFFER);
+    claiming_.bindStorage(CACHE_CLAIMING_BUFFER);
     pass.dispatch(size, group);
   }
   const gl::ComputePass pass("cache claim records",
@@ -285,7 +296,8 @@ void IrradianceCache::mark(const Inputs& inputs) {
   keys_.bind(UNIT_CACHE_KEYS);
   slotTable_.buffer().bindStorage(CACHE_SLOTS_BUFFER);
   prefetchPoints_.bindStorage(CACHE_PREFETCH_BUFFER);
-  pass.dispatch(size, group);
+  claiming_.bindStorage(CACHE_CLAIMING_BUFFER);
+  pass.dispatchIndirect(work_[0], kClaimGroups * sizeof(GLuint));
 }
 
 // Lists visible records with fewer paths than `target`.
@@ -312,6 +324,7 @@ void IrradianceCache::list(int target, bool countsFading) {
 std::array<GLuint, IrradianceCache::kWorkWords> IrradianceCache::noWork() {
   std::array<GLuint, kWorkWords> words{0, 1, 1};
   for (std::size_t part = kLitGroups; part < kTraced; part += 3) words[part + 1] = words[part + 2] = 1;
+  words[kClaimGroups + 1] = words[kClaimGroups + 2] = 1;
   return words;
 }
 
@@ -437,7 +450,7 @@ void IrradianceCache::beginToFollow(bool fades) {
   movedBoxes_.upload(0, bytes, boxes.data());
 }
 
-void IrradianceCache::update(const Inputs& inputs, int rounds) {
+IrradianceCache::Found IrradianceCache::findRecords(const Inputs& inputs) {
   if (followed_) beginToFollow(inputs.fades);
   const bool moved = !cascades_.empty() &&
                      !std::equal(cascades_.begin(), cascades_.end(), inputs.cascades.begin(), inputs.cascades.end(),
@@ -454,6 +467,18 @@ void IrradianceCache::update(const Inputs& inputs, int rounds) {
   else if (moved) keep(*keep_);
   followed_ = false;
   mark(inputs);
+  return {relights, mostChange};
+}
+
+void IrradianceCache::see(const Inputs& inputs) {
+  findRecords(inputs);
+  sees_ = true;
+  list(0);  // records are placed by the view that has found them
+}
+
+void IrradianceCache::update(const Inputs& inputs, int rounds) {
+  const auto [relights, mostChange] = findRecords(inputs);
+  sees_ = false;
   if (relights) relight();
   moved_.clear();
   if (settings_.transport == CacheTransport::gather) {
@@ -544,8 +569,8 @@ double IrradianceCache::mostIterations() const {
 std::size_t IrradianceCache::gpuBytes() const {
   std::size_t bytes = cascadeConstants_.bytes() + cascadeConstantsBefore_.bytes() + constants_.bytes() +
                       pathConstants_.bytes() + lit_.bytes() + slotTable_.bytes() + keys_.bytes() + seen_.bytes() +
-                      irradiance_.bytes() + prefetchPoints_.bytes() + movedBoxes_.bytes() + ring_->bytes() +
-                      (gather_ ? gather_->gpuBytes() : 0);
+                      claiming_.bytes() + irradiance_.bytes() + prefetchPoints_.bytes() + movedBoxes_.bytes() +
+                      ring_->bytes() + (gather_ ? gather_->gpuBytes() : 0);
   for (std::size_t i = 0; i < 2; ++i) bytes += records_[i].bytes() + work_[i].bytes();
   if (kept_) bytes += kept_->hits[0].bytes() + kept_->hits[1].bytes() + kept_->traced.bytes() + kept_->light.bytes();
   return bytes;

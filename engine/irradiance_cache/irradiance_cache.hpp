@@ -77,6 +77,10 @@ class IrradianceCache {
   /// One frame: finds records for visible surfaces, and traces Settings::rays paths for those that lack some,
   /// Settings::leastRays for new ones. rounds: the paths of this many frames at once.
   void update(const Inputs& inputs, int rounds = 1);
+  /// Places records for surfaces of another view, which the next update lights with its own.
+  void see(const Inputs& inputs);
+  /// The view whose pixels' surfaces seenAt() of shaders/irradiance_cache/seen.glsl finds, until the next update.
+  void show(const Inputs& inputs);
   /// The scene moves, and `traced` with it. The next update lights all records anew. Where the picture fades in they
   /// stay in their places, outside of `moved` boxes (where surfaces were or are now, among the frame's positions), and
   /// paths end at the light shown before; a whole picture is that of a new cache. lampsAlone: of all light, at most
@@ -120,7 +124,7 @@ class IrradianceCache {
   void collect(bool wait = false);
   const Counts& counts() const { return counts_; }
   const IrradianceCacheSettings& settings() const { return settings_; }
-  std::uint32_t frame() const { return frame_; }  ///< the last update's number
+  std::uint32_t nextFrame() const { return sees_ ? frame_ : frame_ + 1; }  ///< the next update's number
   const gl::Texture& irradiance() const { return irradiance_; }
   /// Of a submission, at most: the list of records that it works on ends there (gl/chunks.hpp).
   double mostIterations() const;
@@ -131,10 +135,16 @@ class IrradianceCache {
  private:
   static constexpr double kIterationsOfPath = 256.0;  ///< of a lane, approximately (gl/chunks.hpp)
   // Words of shaders/irradiance_cache/work.glsl.
-  static constexpr std::size_t kWanted = 3, kWaiting = 4, kFrame = 5, kLitGroups = 6, kTraced = 36, kWorkWords = 37;
+  static constexpr std::size_t kWanted = 3, kWaiting = 4, kFrame = 5, kLitGroups = 6, kTraced = 36, kClaimGroups = 37,
+                               kWorkWords = 41;
   static std::array<GLuint, kWorkWords> noWork();  ///< groups of all dispatches: 0 by 1 by 1
 
   void beginToFollow(bool fades);
+  struct Found {
+    bool relights;  ///< all records are to be lit again by what their paths hit
+    float mostChange;
+  };
+  Found findRecords(const Inputs& inputs);
   void place(const Inputs& inputs);
   void keep(const gl::Program& program);
   void findPrefetchPoints();
@@ -160,6 +170,7 @@ class IrradianceCache {
   bool cached_;  ///< paths end at records
   std::size_t slots_, capacity_;
   std::uint32_t frame_ = 0;
+  bool sees_ = false;  ///< since the last update
   std::vector<Cascade> cascades_;  ///< of the previous frame
   shared::PathConstants path_{};
   std::vector<glm::vec4> emissiveBodies_;  ///< of small_lamps.hpp; empty where no light is kept by cells
@@ -177,6 +188,7 @@ class IrradianceCache {
   std::unique_ptr<KeptHits> kept_;  ///< only in scenes that move, once they have
   gl::Buffer constants_, pathConstants_, lit_, prefetchPoints_;
   std::array<gl::Buffer, 2> records_, work_;  ///< the second of each: before the cascades moved
+  gl::Buffer claiming_;  ///< as many as the picture has pixels
   gl::BufferTexture slotTable_, keys_, seen_;
   gl::Texture irradiance_;  ///< cacheIrradiance in GLSL: as looked up
   std::unique_ptr<gl::ReadBackRing> ring_;

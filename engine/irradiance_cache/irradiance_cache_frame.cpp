@@ -78,8 +78,9 @@ void IrradianceCacheFrame::makeReflections() {
   std::optional<Bodies> bodies;
   if (Bodies::isNeeded(parts_.features))
     bodies.emplace(parts_.scene, parts_.traced.get().origin(), parts_.context.capabilities());
-  reflections_.emplace(parts_.programs, parts_.scene, cache_.rayFlags(1, true), settings().reflections,
-                       parts_.traced.get().hasCoats(), parts_.settings.unmeasuredIterations, std::move(bodies));
+  reflections_.emplace(parts_.programs, parts_.context.capabilities(), parts_.scene, cache_.rayFlags(1, true),
+                       settings().reflections, parts_.traced.get().hasCoats(), parts_.settings.unmeasuredIterations,
+                       std::move(bodies));
   reflections_->resize(visible_.size());
 }
 
@@ -110,30 +111,57 @@ bool IrradianceCacheFrame::record(gl::TimeQuery& timer, const FrameView& view, F
   const Camera& volume = view.volumeCamera;
   volumePosition_ = volume.position;
   volumeDirection_ = volume.direction;
-  if (view.isNew) since_ = cache_.frame() + 1;
+  if (view.isNew) since_ = cache_.nextFrame();
   const IrradianceCache::Counts& counts = cache_.counts();
   settled_ = !view.isNew && counts.frame >= since_ && counts.waiting == 0;
+  const bool isLit = (settled_ && parts_.settings.reuse) || effort.isFurtherSample;
   const bool reflectsAnew = reflections_ && parts_.settings.pixelSamples > 1;  // another point of each pixel
-  if (((settled_ && parts_.settings.reuse) || effort.isFurtherSample) && !reflectsAnew) return false;
+  if (isLit && !reflectsAnew) return false;
+  const Reflections::Share share =
+      reflections_ ? reflections_->shareOf(view.sample, parts_.settings.pixelSamples, effort.wholePicture)
+                   : Reflections::Share{};
+  if (isLit && share.rays == 0) {
+    reflections_->clear();
+    return false;
+  }
   const bool mapsAreNew = hasMaps() ? maps_->willBeDrawn() : !parts_.settings.reuse;
   const std::vector<ReflectiveShadowMap::Outputs> none;
-  const std::vector<ReflectiveShadowMap::Outputs>& maps = maps_ ? maps_->record(timer) : none;
-  {
-    const gl::TimeQuery::Scope stage(timer, "geometry");
-    visible_.record(parts_.drawn(), view.drawn());
-  }
+  const std::vector<ReflectiveShadowMap::Outputs>& maps = maps_ && !isLit ? maps_->record(timer) : none;
+  recordSurfaces(timer, view);
   const gl::TimeQuery::Scope stage(timer, "irradiance cache");
   const IrradianceCacheSettings& cache = settings();
   const int rounds = effort.wholePicture ? (cache.samples + cache.rays - 1) / cache.rays : 1;
-  const glm::dvec2 size(visible_.size());
-  const glm::mat4 worldFromClip(glm::inverse(view.clip));
-  cache_.update({placeCascadesAround(cache.cascades, parts_.drawn().scene().bounds, volume, size.x / size.y),
-                 view.camera, view.offset, worldFromClip, visible_, maps, mapsAreNew, effort.fadesIn},
-                rounds);
+  const IrradianceCache::Inputs seen = inputs(view, maps, mapsAreNew, effort.fadesIn);
+  if (isLit) cache_.show(seen);
+  else cache_.update(seen, rounds);
   if (reflections_)
-    reflections_->record(view.sample, parts_.settings.pixelSamples, visible_, worldFromClip,
-                         [&] { cache_.bindForRays(); });
+    reflections_->record(view.sample, share, visible_, seen.worldFromClip, [&] { cache_.bindForRays(); });
   return true;
+}
+
+void IrradianceCacheFrame::see(gl::TimeQuery& timer, const FrameView& view) {
+  recordSurfaces(timer, view);
+  const gl::TimeQuery::Scope stage(timer, "irradiance cache");
+  cache_.see(inputs(view, {}, false, false));
+}
+
+void IrradianceCacheFrame::recordSurfaces(gl::TimeQuery& timer, const FrameView& view) {
+  const gl::TimeQuery::Scope stage(timer, "geometry");
+  visible_.record(parts_.drawn(), view.drawn());
+}
+
+IrradianceCache::Inputs IrradianceCacheFrame::inputs(const FrameView& view,
+                                                     const std::vector<ReflectiveShadowMap::Outputs>& maps,
+                                                     bool mapsAreNew, bool fades) const {
+  const glm::dvec2 size(visible_.size());
+  return {placeCascadesAround(settings().cascades, parts_.drawn().scene().bounds, view.volumeCamera, size.x / size.y),
+          view.camera,
+          view.offset,
+          glm::mat4(glm::inverse(view.clip)),
+          visible_,
+          maps,
+          mapsAreNew,
+          fades};
 }
 
 Image IrradianceCacheFrame::readFromCells(const CascadeSettings& cascades, float blendBand, int paths) const {

@@ -35,6 +35,7 @@ class IrradianceCacheFrame final : public FrameTechnique {
   }
   void resize() override;
   bool follow(const SceneChange& change) override;
+  void see(gl::TimeQuery& timer, const FrameView& view) override;
   /// Draws depth, unless no work is left for this view.
   bool record(gl::TimeQuery& timer, const FrameView& view, FrameEffort effort) override;
   void bindForShading() const override {
@@ -70,6 +71,9 @@ class IrradianceCacheFrame final : public FrameTechnique {
 
  private:
   void makeReflections();
+  void recordSurfaces(gl::TimeQuery& timer, const FrameView& view);
+  IrradianceCache::Inputs inputs(const FrameView& view, const std::vector<ReflectiveShadowMap::Outputs>& maps,
+                                 bool mapsAreNew, bool fades) const;
   bool hasMaps() const { return maps_ && maps_->count() > 0; }
   const IrradianceCacheSettings& settings() const { return parts_.settings.of<IrradianceCacheSettings>(); }
 

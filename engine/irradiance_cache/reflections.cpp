@@ -3,6 +3,7 @@
 #include "gl/pass.hpp"
 #include "shared/bindings.h"
 
+#include <array>
 #include <utility>
 
 namespace lucerna {
@@ -11,11 +12,18 @@ namespace {
 constexpr int kReflectionGroup = 8;
 constexpr double kRaysOfEach = 4.0;  ///< on average: it passes mirrors and glass, and lamps are looked for at its end
 constexpr double kRaysThroughMedia = 12.0;  ///< with the boundaries and collisions of a body or cloud
+
+bool hasCoatsAlone(const SceneFeatures& features) {
+  return !features.mirrors && !features.conductors && !features.dielectrics && !Bodies::isNeeded(features);
+}
 }  // namespace
 
-Reflections::Reflections(gl::ProgramLibrary& programs, const Scene& scene, const gl::ShaderFlags& flags, int rays,
-                         bool hasCoats, double unmeasured, std::optional<Bodies> bodies)
+Reflections::Reflections(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, const Scene& scene,
+                         const gl::ShaderFlags& flags, int rays, bool hasCoats, double unmeasured,
+                         std::optional<Bodies> bodies)
     : rays_(rays),
+      coatsAlone_(hasCoats && hasCoatsAlone(analyse(scene))),
+      clearTexture_(capabilities.clearTexture),
       lamps_((scene.sun ? 1 : 0) + static_cast<int>(scene.spots.size() + scene.points.size())),
       bodies_(std::move(bodies)),
       chunks_(unmeasured),
@@ -31,21 +39,32 @@ void Reflections::resize(glm::ivec2 size) {
   if (smooth_) averaged_ = gl::Texture("averaged reflections", gl::Format::rgba32f, size);
 }
 
-void Reflections::record(int sample, int samples, const VisibleSurfaces& visible, const glm::mat4& worldFromClip,
+Reflections::Share Reflections::shareOf(int sample, int samples, bool wholePicture) const {
+  const int rays = (rays_ + samples - 1) / samples;
+  if (!wholePicture || !coatsAlone_) return {rays, 1.0f};
+  const int tracing = (rays_ + rays - 1) / rays;
+  return {sample < tracing ? rays : 0, static_cast<float>(samples) / static_cast<float>(tracing)};
+}
+
+void Reflections::clear() {
+  const std::array<const gl::Texture*, 1> textures{&radiance_};
+  gl::clearToZero(textures, clearTexture_);
+}
+
+void Reflections::record(int sample, const Share& share, const VisibleSurfaces& visible, const glm::mat4& worldFromClip,
                          const std::function<void()>& bind) {
   {
-    // The cache stores its records before: that pass waits for the draws that read the last frame's reflections.
-    const gl::ComputePass pass("cache reflections", gl::Barrier::textureFetch);
+    const gl::ComputePass pass("cache reflections", gl::Barrier::textureFetch, gl::Barrier::image);
     program_->use();
     bind();
     if (bodies_) bodies_->bind(*program_);
-    const int rays = (rays_ + samples - 1) / samples;
-    program_->set("rays", rays);
+    program_->set("rays", share.rays);
+    program_->set("weight", share.weight);
     program_->set("pixelSample", sample);
     radiance_.bindImage(0, gl::Access::write);
     const double ofEach = bodies_ ? kRaysThroughMedia : kRaysOfEach;
     // Its own ray, one to what shines, and one to each lamp.
-    const double iterations = (1.0 + ofEach * rays * (2 + lamps_)) * gl::kIterationsOfRay;
+    const double iterations = (1.0 + ofEach * share.rays * (2 + lamps_)) * gl::kIterationsOfRay;
     chunks_.forEach(radiance_.size2d(), iterations, kReflectionGroup, [&](glm::ivec2 corner, glm::ivec2 size) {
       program_->set("firstPixel", corner);
       pass.dispatch(glm::ivec3(size, 1), glm::ivec3(kReflectionGroup, kReflectionGroup, 1));

@@ -25,15 +25,23 @@ class Reflections {
   static bool showsClouds(const SceneFeatures& features, int rays) { return Bodies::hasClouds(features) && rays > 0; }
   /// flags: of programs that trace rays and look up records. rays: per pixel. hasCoats: rough surfaces reflect. bodies:
   /// if the scene has media.
-  Reflections(gl::ProgramLibrary& programs, const Scene& scene, const gl::ShaderFlags& flags, int rays, bool hasCoats,
-              double unmeasured, std::optional<Bodies> bodies);
+  Reflections(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, const Scene& scene,
+              const gl::ShaderFlags& flags, int rays, bool hasCoats, double unmeasured, std::optional<Bodies> bodies);
 
   void resize(glm::ivec2 size);
-  /// For the view that the records were last updated for. sample: number of the pixels' sample, each of which takes
-  /// its share of the rays, at least one. visible, worldFromClip: that view's. bind: scene, records and their
-  /// constants.
-  void record(int sample, int samples, const VisibleSurfaces& visible, const glm::mat4& worldFromClip,
+  /// A sample's share of a pixel's rays, and the weight of what they find.
+  struct Share {
+    int rays = 0;
+    float weight = 1.0f;
+  };
+  /// At least one. In a picture that is shown when it is whole the first samples trace all rays of coats: their edges
+  /// are those of the surface. Mirrors and glass show edges of their own.
+  Share shareOf(int sample, int samples, bool wholePicture) const;
+  /// For the view that IrradianceCache::show() or update() had last. sample: number of the pixels' sample. visible,
+  /// worldFromClip: that view's. bind: scene, records and their constants.
+  void record(int sample, const Share& share, const VisibleSurfaces& visible, const glm::mat4& worldFromClip,
               const std::function<void()>& bind);
+  void clear();  ///< nothing is reflected
   void bindForShading() const;  ///< unit UNIT_REFLECTED for shaders/irradiance_cache/surface.frag
   double largestIterations() const { return chunks_.largestIterations(); }
   std::size_t gpuBytes() const {
@@ -43,7 +51,10 @@ class Reflections {
  private:
   void smooth(const VisibleSurfaces& visible, const glm::mat4& worldFromClip) const;
 
-  int rays_, lamps_;
+  int rays_;
+  bool coatsAlone_;  ///< no mirrors, glass or clouds
+  bool clearTexture_;
+  int lamps_;
   std::optional<Bodies> bodies_;
   gl::PictureChunks chunks_;
   gl::Texture radiance_;  ///< W per square scene unit and steradian, of each pixel

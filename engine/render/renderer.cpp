@@ -485,6 +485,8 @@ void Renderer::bindFrameConstants(const FrameView& view) {
   frame.exposure = exposure_;
   frame.pixelSample = view.sample;
   frame.pixelSamples = settings_.pixelSamples;
+  if (settings_.filter != PixelFilter::centre)
+    frame.sampleArea = 1.0f / static_cast<float>(moves_ ? settings_.motionSamples : settings_.pixelSamples);
   if (scene.sun) {
     frame.sunClipFromWorld = glm::mat4(sunFrustum_.clipFromWorld);
     frame.sunDirection = glm::vec3(scene.sun->direction);
@@ -579,7 +581,7 @@ bool Renderer::beginView(const Camera& camera, const Camera& volumeCamera) {
 }
 
 void Renderer::render(const Camera& camera, const Camera& volumeCamera) {
-  const bool moves = beginView(camera, volumeCamera);
+  const bool moves = moves_ = beginView(camera, volumeCamera);
   if (!accumulates()) {
     drawSample(0, {});
   } else if (!isSettled()) {
@@ -627,21 +629,29 @@ void Renderer::renderSamples(const Camera& camera, const Camera& volumeCamera) {
 
 void Renderer::renderToTheEnd(const Camera& camera) { drawSamples(camera, camera, {true, false}); }
 
-// All samples of one picture, with all their light where the whole picture is asked for.
+// All samples of one picture, with all their light where the whole picture is asked for: that of what any of them shows
+// comes with the first.
 void Renderer::drawSamples(const Camera& camera, const Camera& volumeCamera, FrameEffort effort) {
   beginView(camera, volumeCamera);
+  moves_ = false;
   antialiasing_.clear();
-  const bool reuse = settings_.reuse;
-  for (int sample = 0; sample < (accumulates() ? settings_.pixelSamples : 1); ++sample) {
-    settings_.reuse = reuse || sample > 0;  // samples share what does not depend on the view
-    drawSample(sample, effort);
-    if (technique_ && effort.wholePicture) {
-      technique_->collect(true);
-      for (std::size_t frames = 0; technique_->lacksLight(frames); ++frames) {
-        drawSample(sample, {false, effort.fadesIn});
-        technique_->collect(true);
-      }
+  const int samples = accumulates() ? settings_.pixelSamples : 1;
+  const bool findsAll = technique_ && effort.wholePicture;
+  const auto drawFirst = [&](FrameEffort ofFrame) {
+    for (int further = 1; findsAll && further < samples; ++further) {
+      const FrameView view = viewOf(camera, volumeCamera, samples_[static_cast<std::size_t>(further)]);
+      bindFrameConstants(view);
+      technique_->see(timer_, view);
     }
+    drawSample(0, ofFrame);
+    if (findsAll) technique_->collect(true);
+  };
+  drawFirst(effort);
+  for (std::size_t frames = 0; findsAll && technique_->lacksLight(frames); ++frames) drawFirst({false, effort.fadesIn});
+  effort.isFurtherSample = findsAll;
+  const bool reuse = std::exchange(settings_.reuse, true);  // samples share what does not depend on the view
+  for (int sample = 0; sample < samples; ++sample) {
+    if (sample > 0) drawSample(sample, effort);
     if (accumulates()) antialiasing_.add(radiance_, noAttributes_);
   }
   settings_.reuse = reuse;

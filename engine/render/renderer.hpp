@@ -192,6 +192,7 @@ class Renderer {
   std::vector<glm::dvec2> samples_;  ///< offsets from pixels' centres
   int nextSample_ = 0;  ///< while light or the view changes
   bool sceneMoves_ = false;  ///< since the last frame
+  bool moves_ = false;  ///< the view, in this frame
   Antialiasing antialiasing_;
 };
 

@@ -41,8 +41,18 @@ layout(location = 0) out vec4 radiance;
 #if SPECULAR
 #include "lib/material_coat.glsl"
 #include "lib/coat_reflection.glsl"
-Coat coat;
+Coat coat, highlight;  // highlight: for lamps
 bool isCoated;
+
+// The lobe of all that a sample covers, whose normals differ: a highlight smaller than a pixel flickers in motion
+// [TokuyoshiKaplanyan2019]. The sample's variance is that of a Gaussian as wide as what it covers.
+Coat coatOfArea(Coat coat, vec3 normal) {
+  const float kVariance = 0.25, kMost = 0.18;
+  vec3 across = dFdx(normal), up = dFdy(normal);
+  float spread = 2.0 * kVariance * frame.sampleArea * (dot(across, across) + dot(up, up));
+  if (coat.alpha > 0.0) coat.alpha = min(sqrt(coat.alpha * coat.alpha + min(spread, kMost)), 1.0);
+  return coat;
+}
 #endif
 #if EMISSION
 #include "lib/emission.glsl"
@@ -54,7 +64,7 @@ bool isCoated;
 // BRDF value: reflected radiance per irradiance.
 vec3 reflection(vec3 albedo, vec3 normal, vec3 toCamera, vec3 toLight) {
 #if SPECULAR
-  return coatedReflection(coat, albedo, normal, toCamera, toLight);
+  return coatedReflection(highlight, albedo, normal, toCamera, toLight);
 #else
   return albedo / kPi;
 #endif
@@ -104,6 +114,9 @@ void main() {
 #endif
 #if NORMAL_MAPS
   normal = normalize(gl_FrontFacing ? mapped : -mapped);
+#endif
+#if SPECULAR
+  highlight = coatOfArea(coat, normal);
 #endif
 
   // Sun and lamps.

@@ -3,8 +3,13 @@
 // they come after the picture's pixels. Slots with a record keep it. An empty slot goes to the pixel nearest to its
 // cell's centre and most aligned with its axis: an actual point, because the mean of several would lie buried in edges
 // and corners.
-// First pass: the best key of each empty slot. Second pass, CLAIM: the winner creates the record.
+// First pass: the best key of each empty slot, and a list of the pixels that found one. Second pass, CLAIM, over that
+// list: the winner creates the record.
+#if CLAIM
+layout(local_size_x = 64) in;
+#else
 layout(local_size_x = 8, local_size_y = 8) in;
+#endif
 #include "lib/clamped_int.glsl"
 #include "irradiance_cache/common.glsl"
 #include "irradiance_cache/work.glsl"
@@ -17,7 +22,9 @@ layout(binding = UNIT_CACHE_KEYS) uniform usamplerBuffer cacheKeys;
 layout(std430, binding = CACHE_RECORDS_BUFFER) writeonly restrict buffer CacheRecords { CacheRecord records[]; };
 // aliased CacheSlots: only the winner of an empty slot changes it; all others skip the slot with either value
 layout(std430, binding = CACHE_SLOTS_BUFFER) writeonly restrict buffer CacheSlots { uint slots[]; };
+layout(std430, binding = CACHE_CLAIMING_BUFFER) readonly restrict buffer CacheClaiming { uint claiming[]; };
 #else
+layout(std430, binding = CACHE_CLAIMING_BUFFER) writeonly restrict buffer CacheClaiming { uint claiming[]; };
 layout(std430, binding = CACHE_SEEN_BUFFER) writeonly restrict buffer CacheSeen { uint seen[]; };
 layout(std430, binding = CACHE_KEYS_BUFFER) restrict buffer CacheKeys { uint keys[]; };
 #endif
@@ -27,9 +34,18 @@ const float kLeans = 0.02;  // squared component of the normal from which the sl
 const int kPrefetchCascades = 2;
 
 void main() {
-  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy), size = textureSize(visibleDepth, 0);
+  ivec2 size = textureSize(visibleDepth, 0);
+#if CLAIM
+  if (gl_GlobalInvocationID.x >= work.claiming) return;
+  int number = int(claiming[gl_GlobalInvocationID.x]);
+  ivec2 pixel = ivec2(number % size.x, number / size.x);
+#else
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (pixel.x >= size.x) return;
-  int number = pixel.y * size.x + pixel.x, beyond = number - size.x * size.y;
+  int number = pixel.y * size.x + pixel.x;
+  bool claims = false;
+#endif
+  int beyond = number - size.x * size.y;
   bool isPrefetch = beyond >= 0;
   vec3 position, normal;
   uint name;  // in a key
@@ -71,6 +87,7 @@ void main() {
                                      position, cache.frame, normal, uint(number), vec3(0.0), 0.0);
       slots[slot] = index + 1u;
 #else
+      claims = claims || holds == 0u;
       if (holds == 0u)
         atomicMin(keys[slot], key);
       else if (!isPrefetch && holds <= uint(seen.length()))
@@ -78,4 +95,10 @@ void main() {
 #endif
     }
   }
+#if !CLAIM
+  if (!claims) return;
+  uint place = atomicAdd(work.claiming, 1u);
+  claiming[place] = uint(number);
+  atomicMax(work.claimGroups[0], place / 64u + 1u);
+#endif
 }

@@ -25,6 +25,7 @@ layout(std140, binding = BLOCK_CACHE_PATHS) uniform PathBlock { PathConstants tr
 layout(binding = 0) writeonly restrict uniform image2D reflected;
 uniform ivec2 firstPixel;
 uniform int rays;         // per sample of a pixel
+uniform float weight;     // of what they find
 uniform int pixelSample;  // its number: each draws other random numbers
 #define SHINING (NEXT_EVENT && (EMISSION || ENVIRONMENT_PICTURE))  // lights that rays find too
 #if CLOUDS || SHINING
@@ -444,5 +445,5 @@ void main() {
       sum = reflectedBy(surface, hit.triangle, view, PathNumbers(uint(index), uint(pixelSample), tracer.seed), alpha);
     }
   }
-  imageStore(reflected, pixel, vec4(sum, alpha));
+  imageStore(reflected, pixel, vec4(weight * sum, alpha));
 }

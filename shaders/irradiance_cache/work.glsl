@@ -7,6 +7,8 @@ struct CacheWork {
   uint frame;
   uint litGroups[3 * CACHE_PARTS];
   uint traced;  // paths to be traced again in the last frame in which the scene moved
+  uint claimGroups[3];
+  uint claiming;  // pixels that have found an empty slot
 };
 
 // The weight in lookups of a record that has faded in. At least a quarter: times 1/8, the least share of a point's

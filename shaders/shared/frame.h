@@ -17,6 +17,7 @@ struct FrameConstants {
   int pixelSamples;        // that a picture has
   vec3 orthographicAxis;   // unit, along an orthographic view; 0: the view is perspective
   float sunTangent;        // of half the angle of the sun's disc; 0 where its shadows have no penumbra
+  float sampleArea;        // of a pixel, that one sample of this frame stands for; 0: a point
 };
 
 SHARED_END

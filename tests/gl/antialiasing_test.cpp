@@ -2,15 +2,20 @@
 // while the view moves.
 #include "base/error.hpp"
 #include "base/pixel_filter.hpp"
+#include "irradiance_cache/settings.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "render/renderer.hpp"
 #include "support/gl_fixture.hpp"
+#include "support/media_scenes.hpp"
+#include "support/small_scenes.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <random>
+#include <vector>
 
 namespace lucerna {
 namespace {
@@ -105,6 +110,46 @@ TEST_F(AntialiasingGl, ThroughCentresThereIsNoShare) {
   }
 }
 
+// The texture is four times as coarse across the stripes as along them: each of 16 samples alone would blur them less
+// than the pixel does; one sample needs an anisotropic filter.
+TEST_F(AntialiasingGl, StripesOnASurfaceThatTurnsAwayStaySharp) {
+  constexpr int kTexels = 64;
+  constexpr float kTurned = 4.0f;  // texels of a pixel's height; of its width: one
+  EdgeScene scene(-2.0 * kPicture);
+  Bitmap stripes{kTexels, kTexels, std::vector<std::uint8_t>(4 * kTexels * kTexels, 255)};
+  for (std::size_t i = 0; i < stripes.rgba.size(); ++i)
+    if (i % 4 < 3 && i / 4 % 4 >= 2) stripes.rgba[i] = 0;
+  scene.textures.push_back({"stripes", stripes});
+  scene.materials[0].emissionTexture = 0;
+  scene.materials[0].emissionScale = glm::vec3(1.0f);
+  for (Vertex& v : scene.vertices) v.texCoord = glm::vec2(v.position) * glm::vec2(1.0f, kTurned) / float{kTexels};
+  for (const int samples : {1, 16}) {
+    const Image image = frames(scene, settingsFor(samples));
+    for (int x = 0; x < kPicture; ++x) {
+      const bool isWhite = (x - kPicture / 2 + kTexels) % 4 < 2;
+      EXPECT_NEAR(image.at(x, 5).x, isWhite ? 1.0 : 0.0, 0.2) << samples << " " << x;
+    }
+  }
+}
+
+// A strip between the pixels' centres: its light is found for the samples that it covers.
+TEST_F(AntialiasingGl, WhatOnlySomeSamplesShowIsLit) {
+  constexpr float kLeft = 0.6f, kRight = 0.85f, kAlbedo = 0.4f;
+  EdgeScene scene(static_cast<double>(kLeft));
+  for (const std::size_t corner : {1, 2}) scene.vertices[corner].position.x = kRight;
+  scene.materials[0].emission = glm::vec3(0.0f);
+  scene.materials[0].diffuse = glm::vec3(kAlbedo);
+  scene.environment.emplace().radiance = glm::vec3(1.0f);
+  for (const CacheTransport transport : {CacheTransport::rays, CacheTransport::gather}) {
+    RenderSettings settings = settingsFor(16);
+    settings.technique = "irradiance-cache";
+    settings.of<IrradianceCacheSettings>().transport = transport;
+    const Image image = frames(scene, settings);
+    EXPECT_NEAR(image.at(kPicture / 2, 5).x, 1.0f - (kRight - kLeft) * (1.0f - kAlbedo), 0.01f);
+    EXPECT_NEAR(image.at(kPicture / 2 - 1, 5).x, 1.0f, 1e-4f);
+  }
+}
+
 // One frame, whose samples lie in columns of equal width. OpenGL 4.3, 14.3.1, leaves their places open; Mesa's are so.
 TEST_F(AntialiasingGl, AMultisampledFrameShowsTheSharesOfAnEdge) {
   constexpr float kSky = 0.25f;
@@ -187,6 +232,101 @@ TEST_F(AntialiasingGl, InMotionAnEdgeIsSmoothAndWhereItIs) {
     EXPECT_LT(with, 0.4 * without) << orthographic;
     EXPECT_LT(four, 0.8 * with) << orthographic;
     EXPECT_LT(fourAlone, 0.55 * without) << orthographic;
+  }
+}
+
+/// Leaves of a pixel or two, cut out of a shining rectangle by a mask.
+EdgeScene leaves() {
+  constexpr int kTexels = 64;
+  EdgeScene scene(-2.0 * kPicture, 0.25f);
+  Bitmap mask{kTexels, kTexels, std::vector<std::uint8_t>(4 * kTexels * kTexels, 0), true};
+  std::mt19937 random(7);
+  for (int leaf = 0; leaf < 160; ++leaf) {
+    const glm::ivec2 at(random() % kTexels, random() % kTexels);
+    for (int y = -2; y <= 2; ++y)
+      for (int x = -2; x <= 2; ++x) {
+        const glm::ivec2 texel = (at + glm::ivec2(x, y) + kTexels) % kTexels;
+        if (x * x + 2 * y * y <= 5) mask.rgba[static_cast<std::size_t>(4 * (texel.y * kTexels + texel.x)) + 3] = 255;
+      }
+  }
+  scene.textures.push_back({"leaves", mask});
+  scene.materials[0].alphaTexture = 0;
+  scene.materials[0].alphaMasked = true;
+  for (Vertex& v : scene.vertices) v.texCoord = glm::vec2(v.position) * (2.0f / kTexels);  // two texels a pixel
+  return scene;
+}
+
+/// Balls with a polished coat, whose reflections of the sun are smaller than a pixel.
+Scene polishedBalls() {
+  test::SceneBuilder builder;
+  builder.materialAt(builder.material(glm::vec3(0.02f))).specular = glm::vec3(0.3f);
+  Scene& scene = builder.scene();
+  scene.materials[0].roughness = 0.12f;
+  for (int i = 0; i < 10; ++i) {
+    const glm::dvec3 centre(3.1 * i - 14.0, 2.3 * (i % 3) - 2.0, 0.0);
+    const std::size_t first = scene.vertices.size();
+    test::addSphere(scene, centre, 1.4, 3, 0);
+    for (std::size_t v = first; v < scene.vertices.size(); ++v)
+      scene.vertices[v].normal = glm::normalize(scene.vertices[v].position - glm::vec3(centre));
+  }
+  scene.sun->direction = glm::normalize(glm::dvec3(-0.3, -0.4, -1.0));
+  return scene;
+}
+
+// Both moved by a fraction of a pixel in each frame, against the same view at rest with many samples: the error of a
+// frame, and of its change from the frame before.
+TEST_F(AntialiasingGl, InMotionLeavesAndHighlightsHoldStill) {
+  struct Case {
+    const char* name;
+    Scene scene;
+    double mostOfAlone, mostChange;  // error over that of each frame alone; error of changes
+  };
+  for (const auto& [name, scene, mostOfAlone, mostChange] :
+       {Case{"leaves", leaves(), 0.5, 0.2}, Case{"highlights", polishedBalls(), 1.1, 0.35}}) {
+    constexpr int kFrames = 40, kFirst = 12;
+    const auto viewAt = [](int frame) { return EdgeScene::view(-0.13 * frame); };
+    std::vector<Image> truth;
+    for (int frame = kFirst - 1; frame < kFrames; ++frame) {
+      Renderer renderer(context(), programs(), scene, settingsFor(256));
+      renderer.renderToTheEnd(viewAt(frame));
+      truth.push_back(renderer.readRadiance());
+    }
+    struct Errors {
+      double frame = 0.0, change = 0.0;
+    };
+    const auto errors = [&](bool reprojection, int samples) {
+      RenderSettings settings = settingsFor(16);
+      settings.reprojection = reprojection;
+      settings.motionSamples = samples;
+      Renderer renderer(context(), programs(), scene, settings);
+      Errors sum;
+      double all = 0.0;
+      std::vector<glm::vec3> before;
+      for (int frame = 0; frame < kFrames; ++frame) {
+        renderer.render(viewAt(frame));
+        if (frame < kFirst - 1) continue;
+        const Image image = renderer.readRadiance();
+        const Image& right = truth[static_cast<std::size_t>(frame - kFirst + 1)];
+        std::vector<glm::vec3> differences;
+        for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+          differences.push_back(image.pixels[i] - right.pixels[i]);
+          const auto square = [](const glm::vec3& v) { return static_cast<double>(glm::dot(v, v)); };
+          if (frame < kFirst) continue;
+          sum.frame += square(differences[i]);
+          sum.change += square(differences[i] - before[i]);
+          all += square(right.pixels[i]);
+        }
+        before = differences;
+      }
+      return Errors{std::sqrt(sum.frame / all), std::sqrt(sum.change / all)};
+    };
+    const Errors with = errors(true, 1), without = errors(false, 1), four = errors(true, 4);
+    std::printf("%s in motion: error %.3f, of changes %.3f; each frame alone %.3f, %.3f; four samples %.3f, %.3f\n",
+                name, with.frame, with.change, without.frame, without.change, four.frame, four.change);
+    EXPECT_LT(with.frame, mostOfAlone * without.frame) << name;
+    EXPECT_LT(with.change, mostChange) << name;
+    EXPECT_LT(with.change, 0.5 * without.change) << name;
+    EXPECT_LT(four.frame, 0.8 * with.frame) << name;
   }
 }
 

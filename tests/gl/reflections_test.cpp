@@ -69,23 +69,25 @@ TEST_F(ReflectionsTest, AMirrorShowsTheSky) {
     for (int c = 0; c < 3; ++c) ASSERT_NEAR(pixel[c], 2.0f * glm::vec3(0.9f, 0.6f, 0.3f)[c], 1e-4f);
 }
 
-// Of every roughness: rays, rays and records, records alone.
+// Of every roughness: rays, rays and records, records alone. A pixel's samples share its rays.
 TEST_F(ReflectionsTest, CoatsReflectAnEvenSkyByTheirAlbedo) {
   const double angle = 0.8;
   const Camera camera = lookingAt({4.0 * std::sin(angle), 4.0 * std::cos(angle), 0}, {0, 0, 0}, 0.05);
   for (const float alpha : {0.001f, 0.1f, 0.35f, 0.8f})
-    for (const float base : {0.0f, 0.6f}) {
-      RenderSettings s = settings();
-      s.of<IrradianceCacheSettings>().reflections = 64;
-      const glm::dvec3 seen =
-          meanOf(drawn(floorUnderSky(coated(glm::vec3(base), {0.04f, 0.3f, 0.9f}, alpha), 1.0f).scene(), camera, s));
-      const reference::CoatedSurface surface(glm::dvec3(base), {0.04, 0.3, 0.9}, static_cast<double>(alpha));
-      const glm::dvec3 coat = surface.albedo(std::cos(angle));
-      for (int c = 0; c < 3; ++c) {
-        const double expected = coat[c] + static_cast<double>(base) * (1.0 - coat[c]);
-        EXPECT_NEAR(seen[c], expected, 0.01 * expected + 1e-3) << alpha << " " << base << " " << c;
+    for (const float base : {0.0f, 0.6f})
+      for (const auto& [samples, rays] : {std::pair(1, 64), std::pair(16, 24), std::pair(16, 4)}) {
+        RenderSettings s = settings();
+        s.pixelSamples = samples;
+        s.of<IrradianceCacheSettings>().reflections = rays;
+        const glm::dvec3 seen =
+            meanOf(drawn(floorUnderSky(coated(glm::vec3(base), {0.04f, 0.3f, 0.9f}, alpha), 1.0f).scene(), camera, s));
+        const reference::CoatedSurface surface(glm::dvec3(base), {0.04, 0.3, 0.9}, static_cast<double>(alpha));
+        const glm::dvec3 coat = surface.albedo(std::cos(angle));
+        for (int c = 0; c < 3; ++c) {
+          const double expected = coat[c] + static_cast<double>(base) * (1.0 - coat[c]);
+          EXPECT_NEAR(seen[c], expected, 0.01 * expected + 1e-3) << alpha << " " << base << " " << c << " " << rays;
+        }
       }
-    }
 }
 
 // A ball of glass hides nothing of an even sky: what it does not reflect, it lets through.
