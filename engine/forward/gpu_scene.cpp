@@ -83,7 +83,8 @@ GpuScene::GpuScene(const Scene& scene, const SceneFeatures& features, const gl::
       for (std::size_t i = 0; i < texels.size() / 4; ++i) texels[i] = texels[4 * i + channel];
       texels.resize(texels.size() / 4);
       const std::vector<std::vector<std::uint8_t>> smaller = maskLevels(texels, size, texture.wraps);
-      gl::Texture& target = textures_.emplace_back(name, use.format, size, withWraps(sampling, texture.wraps),
+      // Their coverage holds for trilinear lookups alone.
+      gl::Texture& target = textures_.emplace_back(name, use.format, size, withWraps(isotropic, texture.wraps),
                                                    1 + static_cast<int>(smaller.size()));
       target.upload(gl::Texels::redByte, texels.data());
       for (std::size_t i = 0; i < smaller.size(); ++i)

@@ -236,7 +236,7 @@ TEST_F(AntialiasingGl, InMotionAnEdgeIsSmoothAndWhereItIs) {
 }
 
 /// Leaves of a pixel or two, cut out of a shining rectangle by a mask.
-EdgeScene leaves() {
+EdgeScene leaves(float texelsOfPixel = 2.0f) {
   constexpr int kTexels = 64;
   EdgeScene scene(-2.0 * kPicture, 0.25f);
   Bitmap mask{kTexels, kTexels, std::vector<std::uint8_t>(4 * kTexels * kTexels, 0), true};
@@ -252,7 +252,7 @@ EdgeScene leaves() {
   scene.textures.push_back({"leaves", mask});
   scene.materials[0].alphaTexture = 0;
   scene.materials[0].alphaMasked = true;
-  for (Vertex& v : scene.vertices) v.texCoord = glm::vec2(v.position) * (2.0f / kTexels);  // two texels a pixel
+  for (Vertex& v : scene.vertices) v.texCoord = glm::vec2(v.position) * (texelsOfPixel / kTexels);
   return scene;
 }
 
@@ -271,6 +271,24 @@ Scene polishedBalls() {
   }
   scene.sun->direction = glm::normalize(glm::dvec3(-0.3, -0.4, -1.0));
   return scene;
+}
+
+// Far away, where a leaf is smaller than a pixel, the tree covers as much as close by.
+TEST_F(AntialiasingGl, LeavesCoverAsMuchOverDistance) {
+  constexpr int kSide = 4 * kPicture;
+  const auto covered = [&](float texelsOfPixel, int samples) {
+    RenderSettings settings = settingsFor(samples);
+    settings.size = {kSide, kSide};
+    return (meanOf(frames(leaves(texelsOfPixel * kSide / kPicture), settings)).x - 0.25) / 0.75;
+  };
+  const double near = covered(1.0f, 256);  // the whole mask
+  for (const int samples : {1, 4, 16})
+    for (const float pixelsOfTile : {17.3f, 9.1f, 5.3f, 3.7f, 2.6f, 1.9f, 1.27f, 0.61f}) {
+      const double far = covered(64.0f / pixelsOfTile, samples);
+      std::printf("leaves, %.1f pixels a tile, %d samples: %.3f of %.3f covered\n", static_cast<double>(pixelsOfTile),
+                  samples, far, near);
+      EXPECT_NEAR(far, near, 0.07 * near) << pixelsOfTile << " " << samples;
+    }
 }
 
 // Both moved by a fraction of a pixel in each frame, against the same view at rest with many samples: the error of a
