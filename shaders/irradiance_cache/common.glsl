@@ -11,6 +11,13 @@ float cellOfLight;  // size of the cells from which the last lookup took its lig
 // Unit of the irradiance in the texture: small, since it is stored times a weight that begins at 1 / 8000 (store.comp).
 float cacheUnit() { return grids.referenceIrradiance / 16.0; }
 
+// A surface's place in a cascade, in cells: a little before it, so that a wall between two cells lies in one of them,
+// whichever way positions are rounded.
+vec3 placeInCells(int cascade, vec3 position, vec3 normal) {
+  const float kBefore = 1.0 / 64.0;
+  return (position - grids.cascades[cascade].minimum) / grids.cascades[cascade].cellSize + kBefore * normal;
+}
+
 int faceOf(int axis, float component) { return 2 * axis + (component < 0.0 ? 1 : 0); }
 
 // cell: index counted from the origin.

@@ -65,7 +65,7 @@ void main() {
     float weight = left * cacheCascadeWeight(k, position);
     if (!(weight > 0.0)) continue;
     if (!isPrefetch) left -= weight;
-    vec3 inCells = (position - grids.cascades[k].minimum) / grids.cascades[k].cellSize;
+    vec3 inCells = placeInCells(k, position, normal);
     ivec3 cell = clampedInt(floor(inCells), ivec3(-1), ivec3(grids.shape.x));
     if (any(lessThan(cell, ivec3(0))) || any(greaterThanEqual(cell, ivec3(grids.shape.x)))) continue;
     float offCentre = length(inCells - vec3(cell) - 0.5);

@@ -207,7 +207,7 @@ Shadow queueShadowRay(Surface surface, uint triangle, float before2, vec3 throug
 void claimFor(Surface surface, uint triangle) {
   int k = grids.shape.y - 1;
   vec3 position = surface.position + cache.rayOrigin, lean = abs(surface.normal);
-  vec3 inCells = floor((position - grids.cascades[k].minimum) / grids.cascades[k].cellSize);
+  vec3 inCells = floor(placeInCells(k, position, surface.normal));
   if (any(lessThan(inCells, vec3(0.0))) || any(greaterThanEqual(inCells, vec3(grids.shape.x)))) return;
   ivec3 cell = clampedInt(inCells, ivec3(0), ivec3(grids.shape.x - 1)) + cache.firstCell[k].xyz;
   int axis = lean.x >= lean.y && lean.x >= lean.z ? 0 : lean.y >= lean.z ? 1 : 2,

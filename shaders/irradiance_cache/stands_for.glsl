@@ -12,7 +12,7 @@ vec4 lightOfSlot(uint slot) {
 // 1 + its slot; 0: none.
 uint standsFor(vec3 position, vec3 normal) {
   for (int k = 0; k < grids.shape.y; ++k) {
-    vec3 inCells = floor((position - grids.cascades[k].minimum) / grids.cascades[k].cellSize);
+    vec3 inCells = floor(placeInCells(k, position, normal));
     if (any(lessThan(inCells, vec3(0.0))) || any(greaterThanEqual(inCells, vec3(grids.shape.x)))) continue;
     ivec3 cell = clampedInt(inCells, ivec3(0), ivec3(grids.shape.x - 1)) + cache.firstCell[k].xyz;
     vec3 lean = normal * normal;
