@@ -114,6 +114,11 @@ int runTune(TuneOptions options) {
       {"settings", row.contains("spp") ? nlohmann::ordered_json::array() : row.at("settings")}};
   if (row.contains("spp")) settings["spp"] = row.at("spp");
   if (row.contains("denoised")) settings["settings"].push_back("path.denoise=on");
+  // What all rows have been measured with, where it is not what a picture has anyway.
+  if (options.bench.filter != nameOf(PixelFilter{}))
+    settings["settings"].push_back("picture.filter=" + options.bench.filter);
+  if (!row.contains("spp") && options.bench.pixelSamples != PictureOptions::kPixelSamples)
+    settings["settings"].push_back(fmt::format("picture.samples={}", options.bench.pixelSamples));
   settings["measured"] = {{"ms", row.at("ms")},
                           {"setup_ms", row.at("setup_ms")},
                           {"nrmse", bench::rankedError(row, "nrmse")},

@@ -145,8 +145,11 @@ std::pair<Scene, Camera> SceneAt::load() const {
 
 void PictureOptions::readSettingsFile() {
   if (!settingsFile.empty()) addSettingsFile();
-  if (pixelSamples) settings.push_back(fmt::format("picture.samples={}", *pixelSamples));
-  if (!filter.empty()) settings.push_back("picture.filter=" + filter);
+  if (pixelSamples && technique == "path")
+    logWarning("--pixel-samples {}: technique path does not read it; its samples are --spp", *pixelSamples);
+  else if (pixelSamples) settings.push_back(fmt::format("picture.samples={}", *pixelSamples));
+  if (!filter.empty())
+    settings.push_back(fmt::format("picture.filter={}", nameOf(parseName<PixelFilter>(filter, "--filter"))));
   if (technique.empty()) technique = impliedTechnique();
   if (settingsSpp && technique != "path")
     throwBadInput("--settings {}: key \"spp\": samples per pixel belong to technique path, not to {}", settingsFile,

@@ -21,8 +21,9 @@ std::vector<std::string> linesOf(const WalkState& state, int index, Show show) {
   if (side.shows == Shows::picture && side.picture)
     title += std::filesystem::path(side.pictureShown).filename().string();
   else if (side.shows == Shows::reference && hasReference)
-    title += fmt::format("reference, {} samples a pixel{}", state.reference->samples(),
-                         state.reference->showsDenoised() ? ", denoised" : "");
+    title +=
+        fmt::format("reference, {} sample{} a pixel{}", state.reference->samples(),
+                    state.reference->samples() == 1 ? "" : "s", state.reference->showsDenoised() ? ", denoised" : "");
   else title += side.built.technique;
   const PathFrame* path =
       side.shows == Shows::technique && side.renderer ? pathFrameOf(side.renderer->technique()) : nullptr;

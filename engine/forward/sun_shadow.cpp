@@ -45,7 +45,7 @@ void SunShadow::bindForShading() const {
 }
 
 float SunShadow::normalOffset(double texel) {
-  constexpr float kTexels = 0.1f;
+  constexpr float kTexels = 0.03f;
   return kTexels * static_cast<float>(texel);
 }
 

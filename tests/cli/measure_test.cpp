@@ -450,6 +450,18 @@ TEST_F(Measure, TuneWritesSettingsThatRenderTakes) {
   ASSERT_EQ(picture.exitCode, 0) << picture.err;
   EXPECT_EQ(json("p.json").at("technique"), settings.at("technique"));
   EXPECT_EQ(json("p.json").at("settings"), settings.at("settings"));
+  // With the filter and the samples that were measured.
+  ASSERT_EQ(RUN_LUCERNA("tune '" + path("scene.obj") + "' --size 32x16 --reference-spp 16 --frames 1 --small --out '" +
+                        path("filtered") + "' --techniques direct --filter gaussian --pixel-samples 4 --quiet " +
+                        "--frame-time 100000 -o '" + path("f.json") + "'")
+                .exitCode,
+            0);
+  EXPECT_EQ(json("f.json").at("settings"), nlohmann::json({"picture.filter=gaussian", "picture.samples=4"}));
+  ASSERT_EQ(RUN_LUCERNA("render '" + path("scene.obj") + "' --size 32x16 --settings '" + path("f.json") + "' -o '" +
+                        path("p.pfm") + "' --json '" + path("p.json") + "'")
+                .exitCode,
+            0);
+  EXPECT_EQ(json("p.json").at("settings"), json("f.json").at("settings"));
   expectOneLine(RUN_LUCERNA(common + "--quiet --error 1e-9 -o '" + path("s.json") + "'"), 2,
                 {"no settings meet", "closest", "set-up"});
   expectOneLine(RUN_LUCERNA(common + "--quiet --frame-time 100000 --setup-time 1e-6 -o '" + path("s.json") + "'"), 2,

@@ -145,7 +145,7 @@ TEST_F(RendererGl, NoLightPassesUnderAWall) {
 }
 
 // A wall below the edge of a roof that is all before it, a sun that shines almost straight at the wall: the map's
-// texels beside the edge store nothing, and the wall is lit by no more than the tenth of a texel that receivers are
+// texels beside the edge store nothing, and the wall is lit by no more than the share of a texel that receivers are
 // moved.
 TEST_F(RendererGl, AWallInTheShadowOfItsRoofIsDarkUpToTheEdge) {
   SceneBuilder builder;
