@@ -637,17 +637,17 @@ void Renderer::drawSamples(const Camera& camera, const Camera& volumeCamera, Fra
   antialiasing_.clear();
   const int samples = accumulates() ? settings_.pixelSamples : 1;
   const bool findsAll = technique_ && effort.wholePicture;
-  const auto drawFirst = [&](FrameEffort ofFrame) {
+  const auto drawFirst = [&] {
     for (int further = 1; findsAll && further < samples; ++further) {
       const FrameView view = viewOf(camera, volumeCamera, samples_[static_cast<std::size_t>(further)]);
       bindFrameConstants(view);
       technique_->see(timer_, view);
     }
-    drawSample(0, ofFrame);
+    drawSample(0, effort);
     if (findsAll) technique_->collect(true);
   };
-  drawFirst(effort);
-  for (std::size_t frames = 0; findsAll && technique_->lacksLight(frames); ++frames) drawFirst({false, effort.fadesIn});
+  drawFirst();
+  for (std::size_t frames = 0; findsAll && technique_->lacksLight(frames); ++frames) drawFirst();
   effort.isFurtherSample = findsAll;
   const bool reuse = std::exchange(settings_.reuse, true);  // samples share what does not depend on the view
   for (int sample = 0; sample < samples; ++sample) {
