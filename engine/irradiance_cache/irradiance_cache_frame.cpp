@@ -78,9 +78,9 @@ void IrradianceCacheFrame::makeReflections() {
   std::optional<Bodies> bodies;
   if (Bodies::isNeeded(parts_.features))
     bodies.emplace(parts_.scene, parts_.traced.get().origin(), parts_.context.capabilities());
-  reflections_.emplace(parts_.programs, parts_.context.capabilities(), parts_.scene, cache_.rayFlags(1, true),
-                       settings().reflections, parts_.traced.get().hasCoats(), parts_.settings.unmeasuredIterations,
-                       std::move(bodies));
+  reflections_.emplace(parts_.programs, parts_.context.capabilities(), parts_.scene, parts_.features,
+                       cache_.rayFlags(1, true), settings().reflections, parts_.traced.get().hasCoats(),
+                       parts_.settings.unmeasuredIterations, std::move(bodies));
   reflections_->resize(visible_.size());
 }
 

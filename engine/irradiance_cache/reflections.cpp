@@ -19,10 +19,10 @@ bool hasCoatsAlone(const SceneFeatures& features) {
 }  // namespace
 
 Reflections::Reflections(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, const Scene& scene,
-                         const gl::ShaderFlags& flags, int rays, bool hasCoats, double unmeasured,
-                         std::optional<Bodies> bodies)
+                         const SceneFeatures& features, const gl::ShaderFlags& flags, int rays, bool hasCoats,
+                         double unmeasured, std::optional<Bodies> bodies)
     : rays_(rays),
-      coatsAlone_(hasCoats && hasCoatsAlone(analyse(scene))),
+      coatsAlone_(hasCoats && hasCoatsAlone(features)),
       clearTexture_(capabilities.clearTexture),
       lamps_((scene.sun ? 1 : 0) + static_cast<int>(scene.spots.size() + scene.points.size())),
       bodies_(std::move(bodies)),

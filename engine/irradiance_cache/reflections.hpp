@@ -26,7 +26,8 @@ class Reflections {
   /// flags: of programs that trace rays and look up records. rays: per pixel. hasCoats: rough surfaces reflect. bodies:
   /// if the scene has media.
   Reflections(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, const Scene& scene,
-              const gl::ShaderFlags& flags, int rays, bool hasCoats, double unmeasured, std::optional<Bodies> bodies);
+              const SceneFeatures& features, const gl::ShaderFlags& flags, int rays, bool hasCoats, double unmeasured,
+              std::optional<Bodies> bodies);
 
   void resize(glm::ivec2 size);
   /// A sample's share of a pixel's rays, and the weight of what they find.

@@ -6,7 +6,7 @@
 // First pass: the best key of each empty slot, and a list of the pixels that found one. Second pass, CLAIM, over that
 // list: the winner creates the record.
 #if CLAIM
-layout(local_size_x = 64) in;
+layout(local_size_x = 64) in;  // CACHE_LANES; GLSL 4.30 accepts only literals here
 #else
 layout(local_size_x = 8, local_size_y = 8) in;
 #endif
@@ -99,6 +99,6 @@ void main() {
   if (!claims) return;
   uint place = atomicAdd(work.claiming, 1u);
   claiming[place] = uint(number);
-  atomicMax(work.claimGroups[0], place / 64u + 1u);
+  atomicMax(work.claimGroups[0], place / uint(CACHE_LANES) + 1u);
 #endif
 }

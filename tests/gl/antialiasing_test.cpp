@@ -110,8 +110,8 @@ TEST_F(AntialiasingGl, ThroughCentresThereIsNoShare) {
   }
 }
 
-// The texture is four times as coarse across the stripes as along them: each of 16 samples alone would blur them less
-// than the pixel does; one sample needs an anisotropic filter.
+// A pixel covers one texel across the stripes and four along them. One sample needs an anisotropic filter; each of 16
+// covers one texel along them.
 TEST_F(AntialiasingGl, StripesOnASurfaceThatTurnsAwayStaySharp) {
   constexpr int kTexels = 64;
   constexpr float kTurned = 4.0f;  // texels of a pixel's height; of its width: one
