@@ -21,5 +21,6 @@ struct CascadeConstants {
   float lookupOffset;   // a surface point is moved by this many cells along its normal before the lookup
   float padding;
 };
+SHARED_BLOCK(CascadeConstants)
 
 SHARED_END

@@ -18,6 +18,8 @@ struct FrameConstants {
   vec3 orthographicAxis;   // unit, along an orthographic view; 0: the view is perspective
   float sunTangent;        // of half the angle of the sun's disc; 0 where its shadows have no penumbra
   float sampleArea;        // of a pixel, that one sample of this frame stands for; 0: a point
+  float padding0, padding1, padding2;
 };
+SHARED_BLOCK(FrameConstants)
 
 SHARED_END

@@ -16,5 +16,6 @@ struct HazeConstants {
   vec3 anisotropy;    // g, mean cosine; 0 for Rayleigh
   float padding3;
 };
+SHARED_BLOCK(HazeConstants)
 
 SHARED_END

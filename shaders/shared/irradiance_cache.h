@@ -121,5 +121,6 @@ struct CacheConstants {
   uint padding2;
   vec4 smallLamp[CACHE_MOST_SMALL_LAMPS];  // balls around them, in the ray caster's coordinates; w: radius
 };
+SHARED_BLOCK(CacheConstants)
 
 SHARED_END

@@ -34,6 +34,7 @@ struct LightConstants {
   SpotLightConstants spots[LIGHTS_MAX_SHADOWS];
   PointLightConstants points[LIGHTS_MAX_SHADOWS];
 };
+SHARED_BLOCK(LightConstants)
 
 // A lamp without a shadow map; rays may tell whether it is visible (rays/shadow_rays.comp).
 struct PlainLamp {

@@ -57,6 +57,7 @@ struct PathConstants {
   int padding0, padding1, padding2;
   vec4 filterQuantiles[16]; // of the pixel filter (engine/base/pixel_filter.hpp), four in each
 };
+SHARED_BLOCK(PathConstants)
 
 // Position of a texture in the atlas; layer is PATH_NO_TEXTURE if there is none.
 struct PathTexture {

@@ -10,5 +10,6 @@ struct SunCascadeConstants {
   mat4 clipFromWorld[SUN_MAX_CASCADES];  // orthographic
   vec4 normalOffset;                     // world units, per cascade: a receiver is moved this far along its normal
 };
+SHARED_BLOCK(SunCascadeConstants)
 
 SHARED_END

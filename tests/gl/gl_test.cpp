@@ -944,6 +944,8 @@ TEST_F(GlSharedStructs, FrameBlock) {
   EXPECT_OFFSET(sunIrradiance);
   EXPECT_OFFSET(background);
   EXPECT_OFFSET(orthographicAxis);
+  EXPECT_OFFSET(sunTangent);
+  EXPECT_OFFSET(sampleArea);
 #undef EXPECT_OFFSET
   EXPECT_EQ(sizeOf(program, "FrameBlock"), static_cast<GLint>(sizeof(FrameConstants)));
 }
