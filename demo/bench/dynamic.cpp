@@ -68,7 +68,7 @@ struct Requested {
 struct Row {
   std::string name;
   std::vector<Image> pictures;  ///< as drawn
-  std::vector<double> ms;
+  std::vector<double> ms, samples;  ///< of each moment; samples: of a pixel, in a frame of its own
   measure::SequenceErrors errors;
 };
 
@@ -228,7 +228,7 @@ class Moments {
 
 Row draw(const DynamicOptions& options, const gl::Context& context, gl::ProgramLibrary& programs, Scene& scene,
          const Requested& asked, const std::vector<Moment>& moments) {
-  Row row{asked.name, {}, {}, {}};
+  Row row{asked.name, {}, {}, {}, {}};
   const RenderSettings& settings = asked.settings;
   poseAt(scene, moments.front().seconds);
   auto renderer = std::make_unique<Renderer>(context, programs, scene, settings);
@@ -238,10 +238,14 @@ Row draw(const DynamicOptions& options, const gl::Context& context, gl::ProgramL
   };
   renderer->renderToTheEnd(moments.front().camera);  // drivers finish shaders on first use
   if (options.live && moments.size() > 1) {
-    // In the window a view has rested for a while before it moves. Here it moves away and back, and rests.
-    follow(moments[1]);
-    renderer->render(moments[1].camera);
-    follow(moments[0]);
+    // In the window a view has moved before, and rested for a while. Here it moves away and back a few times until the
+    // number of samples in motion has settled, and rests.
+    constexpr int kMoves = 6;
+    for (int k = 1; k <= (settings.motionSamples > 0 ? 1 : kMoves) && !interrupted(); ++k)
+      for (const std::size_t place : {std::size_t{1}, std::size_t{0}}) {
+        follow(moments[place]);
+        renderer->render(moments[place].camera);
+      }
     for (int sample = 0; sample < settings.pixelSamples && !interrupted(); ++sample)
       renderer->render(moments[0].camera);
   }
@@ -254,6 +258,7 @@ Row draw(const DynamicOptions& options, const gl::Context& context, gl::ProgramL
     else renderer->renderToTheEnd(moment.camera);
     gl::finish();
     row.ms.push_back(1e3 * secondsSince(start));
+    row.samples.push_back(options.live ? renderer->motionSamples() : settings.pixelSamples);
     row.pictures.push_back(renderer->readRadiance());
   }
   renderer->drain();
@@ -276,12 +281,12 @@ std::string number(double value) { return std::isnan(value) ? "-" : fmt::format(
 /// One line a technique.
 std::string tableOf(const std::vector<Row>& rows) {
   std::string text =
-      "technique                    mean error  worst     lag, frames  ghosts    flicker  ms a frame, median "
-      "(quartiles)\n";
+      "technique                    mean error  worst     lag, frames  ghosts    flicker  samples  ms a frame, "
+      "median (quartiles)\n";
   for (const Row& row : rows)
-    text += fmt::format("{:<28} {:<11} {:<9} {:<12} {:<9} {:<8} {:.1f} ({:.1f} to {:.1f})\n", row.name,
+    text += fmt::format("{:<28} {:<11} {:<9} {:<12} {:<9} {:<8} {:<8} {:.1f} ({:.1f} to {:.1f})\n", row.name,
                         percent(row.errors.mean), percent(row.errors.worst), number(row.errors.lag),
-                        percent(row.errors.ghosts), number(row.errors.flicker), median(row.ms),
+                        percent(row.errors.ghosts), number(row.errors.flicker), median(row.samples), median(row.ms),
                         percentile(row.ms, 0.25), percentile(row.ms, 0.75));
   return text;
 }
@@ -429,6 +434,7 @@ int runDynamic(DynamicOptions options) {
                                   {"flicker", orNull(row.errors.flicker)},
                                   {"l2", row.errors.l2},
                                   {"radiance", radiance},
+                                  {"samples", row.samples},
                                   {"ms", row.ms}});
   }
   writeFileAtomically(fs::path(options.out) / "dynamic.json", json.dump(2) + "\n");

@@ -47,7 +47,7 @@ struct RenderSettings {
   int pixelSamples = 1;  ///< frames of one view that are added up, each for another point of every pixel
   int multisamples = 1;  ///< points of a pixel at which a frame tells surfaces apart; each is shaded once
   PixelFilter filter = PixelFilter::box;  ///< places them
-  int motionSamples = 1;  ///< of them in each frame while the view moves
+  int motionSamples = 0;  ///< of them in each frame while the view moves; 0: by their time (MotionSamples)
   bool reprojection = true;  ///< while the view moves, frames before it smooth edges too
   bool reuse = true;  ///< stages with unchanged inputs are not run again; the same picture, bit by bit
   bool fullFloatTarget = false;  ///< HDR target in 32 instead of 16 bits, for measured pictures

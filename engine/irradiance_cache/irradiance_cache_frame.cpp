@@ -118,7 +118,7 @@ bool IrradianceCacheFrame::record(gl::TimeQuery& timer, const FrameView& view, F
   const bool reflectsAnew = reflections_ && parts_.settings.pixelSamples > 1;  // another point of each pixel
   if (isLit && !reflectsAnew) return false;
   const Reflections::Share share =
-      reflections_ ? reflections_->shareOf(view.sample, parts_.settings.pixelSamples, effort.wholePicture)
+      reflections_ ? reflections_->shareOf(view.sample, parts_.settings.pixelSamples, effort)
                    : Reflections::Share{};
   if (isLit && share.rays == 0) {
     reflections_->clear();

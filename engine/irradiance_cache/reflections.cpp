@@ -39,9 +39,10 @@ void Reflections::resize(glm::ivec2 size) {
   if (smooth_) averaged_ = gl::Texture("averaged reflections", gl::Format::rgba32f, size);
 }
 
-Reflections::Share Reflections::shareOf(int sample, int samples, bool wholePicture) const {
+Reflections::Share Reflections::shareOf(int sample, int samples, FrameEffort effort) const {
   const int rays = (rays_ + samples - 1) / samples;
-  if (!wholePicture || !coatsAlone_) return {rays, 1.0f};
+  if (!coatsAlone_) return {rays};
+  if (!effort.wholePicture) return {.rays = rays, .keepsCoats = effort.isFurtherSample};
   const int tracing = (rays_ + rays - 1) / rays;
   return {sample < tracing ? rays : 0, static_cast<float>(samples) / static_cast<float>(tracing)};
 }
@@ -60,8 +61,9 @@ void Reflections::record(int sample, const Share& share, const VisibleSurfaces& 
     if (bodies_) bodies_->bind(*program_);
     program_->set("rays", share.rays);
     program_->set("weight", share.weight);
+    program_->set("keepsCoats", share.keepsCoats);
     program_->set("pixelSample", sample);
-    radiance_.bindImage(0, gl::Access::write);
+    radiance_.bindImage(0, gl::Access::readWrite);
     const double ofEach = bodies_ ? kRaysThroughMedia : kRaysOfEach;
     // Its own ray, one to what shines, and one to each lamp.
     const double iterations = (1.0 + ofEach * share.rays * (2 + lamps_)) * gl::kIterationsOfRay;
@@ -70,7 +72,7 @@ void Reflections::record(int sample, const Share& share, const VisibleSurfaces& 
       pass.dispatch(glm::ivec3(size, 1), glm::ivec3(kReflectionGroup, kReflectionGroup, 1));
     });
   }
-  if (smooth_) smooth(visible, worldFromClip);
+  if (smooth_ && !share.keepsCoats) smooth(visible, worldFromClip);
 }
 
 void Reflections::smooth(const VisibleSurfaces& visible, const glm::mat4& worldFromClip) const {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "forward/visible_surfaces.hpp"
+#include "frame/frame_parts.hpp"
 #include "gl/objects.hpp"
 #include "gl/picture_chunks.hpp"
 #include "gl/program.hpp"
@@ -34,10 +35,12 @@ class Reflections {
   struct Share {
     int rays = 0;
     float weight = 1.0f;
+    bool keepsCoats = false;  ///< pixels that showed a coat keep what the sample before found there
   };
   /// At least one. In a picture that is shown when it is whole the first samples trace all rays of coats: their edges
-  /// are those of the surface. Mirrors and glass show edges of their own.
-  Share shareOf(int sample, int samples, bool wholePicture) const;
+  /// are those of the surface. In motion further samples of a frame trace rays only where the frame has seen no coat
+  /// yet. Mirrors and glass show edges of their own.
+  Share shareOf(int sample, int samples, FrameEffort effort) const;
   /// For the view that IrradianceCache::show() or update() had last. sample: number of the pixels' sample. visible,
   /// worldFromClip: that view's. bind: scene, records and their constants.
   void record(int sample, const Share& share, const VisibleSurfaces& visible, const glm::mat4& worldFromClip,

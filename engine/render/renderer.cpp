@@ -91,6 +91,7 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
       noAttributes_("full screen"),
       surfaceChunks_(settings.unmeasuredIterations),
       samples_(pixelSamples(settings.filter, settings.pixelSamples)),
+      sampleTimer_(context.capabilities().softwareRenderer),
       antialiasing_(programs) {
   allocateTargets();
   const TechniqueEntry& technique = techniqueNamed(settings.technique);
@@ -400,6 +401,7 @@ void Renderer::allocateTargets() {
   depthTarget_ = gl::Framebuffer("depth", {}, &depth_);
   displayTarget_ = gl::Framebuffer("display", display);
   multisampled_.reset();
+  motionSamples_ = {};
   antialiasing_.resize(settings_.size);
   view_.reset();
   shown_ = &radiance_;
@@ -486,7 +488,7 @@ void Renderer::bindFrameConstants(const FrameView& view) {
   frame.pixelSample = view.sample;
   frame.pixelSamples = settings_.pixelSamples;
   if (settings_.filter != PixelFilter::centre)
-    frame.sampleArea = 1.0f / static_cast<float>(moves_ ? settings_.motionSamples : settings_.pixelSamples);
+    frame.sampleArea = 1.0f / static_cast<float>(moves_ ? motionSamples() : settings_.pixelSamples);
   if (scene.sun) {
     frame.sunClipFromWorld = glm::mat4(sunFrustum_.clipFromWorld);
     frame.sunDirection = glm::vec3(scene.sun->direction);
@@ -585,12 +587,17 @@ void Renderer::render(const Camera& camera, const Camera& volumeCamera) {
   if (!accumulates()) {
     drawSample(0, {});
   } else if (!isSettled()) {
-    for (int i = 0; i < (moves ? settings_.motionSamples : 1) && !isSettled(); ++i) {
+    const bool measures = moves && settings_.motionSamples == 0;
+    if (measures) sampleTimer_.begin();
+    const int samples = moves ? motionSamples() : 1;
+    for (int i = 0; i < samples && !isSettled(); ++i) {
       const int summed = antialiasing_.count();
       const int sample = summed > 0 ? summed : moves || view_->lacksLight ? nextSample_++ % settings_.pixelSamples : 0;
       drawSample(sample, {.isFurtherSample = i > 0});
       showAccumulated(sample, moves && i == 0);
+      if (measures && i == 0) sampleTimer_.split();
     }
+    if (measures) chooseMotionSamples(samples);
   } else {
     bindFrameConstants(viewOf(camera, volumeCamera));  // for the exposure
   }
@@ -616,6 +623,16 @@ void Renderer::showAccumulated(int sample, bool moves) {
                             samples_[static_cast<std::size_t>(sample)], sceneMoves},
                            moves, settings_.reprojection, settings_.pixelSamples, noAttributes_);
   shown_ = &antialiasing_.shown();
+}
+
+int Renderer::motionSamples() const {
+  return settings_.motionSamples > 0 ? settings_.motionSamples : std::min(motionSamples_.now(), settings_.pixelSamples);
+}
+
+void Renderer::chooseMotionSamples(int drawn) {
+  for (const gl::SplitTimer::Times& times : sampleTimer_.end(drawn))
+    // A frame that was on its way when the number changed tells nothing about the new one.
+    if (times.label == motionSamples()) motionSamples_.add(times.first, times.second, settings_.pixelSamples);
 }
 
 bool Renderer::isSettled() const {

@@ -10,6 +10,7 @@
 #include "forward/environment_view.hpp"
 #include "forward/gpu_scene.hpp"
 #include "forward/local_lights.hpp"
+#include "forward/motion_samples.hpp"
 #include "forward/sun_frustum.hpp"
 #include "forward/sun_shadow.hpp"
 #include "frame/technique.hpp"
@@ -17,6 +18,7 @@
 #include "gl/lines.hpp"
 #include "gl/picture_chunks.hpp"
 #include "gl/program.hpp"
+#include "gl/split_timer.hpp"
 #include "gl/time_query.hpp"
 #include "rays/shadow_rays.hpp"
 #include "scene/features.hpp"
@@ -77,6 +79,8 @@ class Renderer {
   /// rest is made anew as far as the change asks for. False: a new Renderer is needed, as other features are, or the
   /// technique draws geometry of its own.
   bool follow(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const SceneChange& change);
+  /// Samples of a pixel that each frame has while the view or the scene moves.
+  int motionSamples() const;
   void setExposure(float exposure) { exposure_ = exposure; }
   float exposure() const { return exposure_; }
 
@@ -121,6 +125,7 @@ class Renderer {
   void drawFrame(const FrameView& view, FrameEffort effort, bool viewIsNew);
   void drawSamples(const Camera& camera, const Camera& volumeCamera, FrameEffort effort);
   void showAccumulated(int sample, bool moves);
+  void chooseMotionSamples(int drawn);
   void toneMap();
   void endFrame();
   FrameView viewOf(const Camera& camera, const Camera& volumeCamera, const glm::dvec2& offset = glm::dvec2(0.0)) const;
@@ -193,6 +198,8 @@ class Renderer {
   int nextSample_ = 0;  ///< while light or the view changes
   bool sceneMoves_ = false;  ///< since the last frame
   bool moves_ = false;  ///< the view, in this frame
+  MotionSamples motionSamples_;
+  gl::SplitTimer sampleTimer_;  ///< of a frame in motion: its first sample, all others
   Antialiasing antialiasing_;
 };
 

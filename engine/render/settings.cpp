@@ -63,9 +63,10 @@ std::span<const Setting> sharedSettings() {
        "to "
        "1.5 pixels; blackman-harris: to 1.5 pixels; centre: one point",
        "[Ernst2006]", rebuild, "", "", "all"},
-      {"picture.motion-samples", number(FRAME_FIELD(motionSamples), 1, 64), "per frame",
-       "of a pixel's samples, those that each frame draws while the view or the scene moves", "", uniform, "", "",
-       "textures"},
+      {"picture.motion-samples", number(FRAME_FIELD(motionSamples), 1, 64, "auto"), "per frame",
+       "of a pixel's samples, those that each frame draws while the view or the scene moves; auto: all after the first "
+       "take half of its time, or what is left of 1/60 s",
+       "", uniform, "", "", "textures"},
       {"picture.reprojection", boolean(FRAME_FIELD(reprojection)), "",
        "while the view moves, earlier frames smooth edges too", "[Salvi2016]", uniform, "", "", "textures"},
       {"frame.reuse", boolean(FRAME_FIELD(reuse)), "",

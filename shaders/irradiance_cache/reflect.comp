@@ -22,11 +22,12 @@ layout(std140, binding = BLOCK_CACHE_PATHS) uniform PathBlock { PathConstants tr
 #include "irradiance_cache/body.glsl"
 #endif
 // unordered reflected: each dispatch writes its own part of the picture
-layout(binding = 0) writeonly restrict uniform image2D reflected;
+layout(rgba32f, binding = 0) restrict uniform image2D reflected;
 uniform ivec2 firstPixel;
 uniform int rays;         // per sample of a pixel
 uniform float weight;     // of what they find
 uniform int pixelSample;  // its number: each draws other random numbers
+uniform bool keepsCoats;  // where the sample before showed a coat, what it reflects stays
 #define SHINING (NEXT_EVENT && (EMISSION || ENVIRONMENT_PICTURE))  // lights that rays find too
 #if CLOUDS || SHINING
 #include "rays/lights.glsl"
@@ -426,6 +427,7 @@ bool cloudBefore(vec3 eye, vec3 view, float distance, PathNumbers numbers, out v
 void main() {
   ivec2 pixel = firstPixel + ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(pixel, tracer.picture.xy))) return;
+  if (keepsCoats && imageLoad(reflected, pixel).a > 0.0) return;
   int index = pixel.y * tracer.picture.x + pixel.x;
   vec3 sum = vec3(0.0);
   float alpha = 0.0;  // of a rough coat; -1: a cloud is before the surface

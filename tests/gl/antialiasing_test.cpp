@@ -1,7 +1,12 @@
 // What a pixel shows of edges: the filter's share of each side, in the path tracer and in added up frames, at rest and
 // while the view moves.
+#include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/pixel_filter.hpp"
+#include "forward/antialiasing.hpp"
+#include "forward/motion_samples.hpp"
+#include "gl/draw.hpp"
+#include "gl/split_timer.hpp"
 #include "irradiance_cache/settings.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "render/renderer.hpp"
@@ -233,6 +238,39 @@ TEST_F(AntialiasingGl, InMotionAnEdgeIsSmoothAndWhereItIs) {
     EXPECT_LT(four, 0.8 * with) << orthographic;
     EXPECT_LT(fourAlone, 0.55 * without) << orthographic;
   }
+}
+
+// By timestamps, as on a GPU: the number follows what the first sample costs beside the others.
+TEST_F(AntialiasingGl, TheNumberOfSamplesInMotionFollowsTheGpusClock) {
+  const gl::VertexArray noAttributes("full screen");
+  const gl::Texture picture("picture", gl::Format::rgba16f, {128, 128});
+  Antialiasing work(programs());
+  work.resize({128, 128});
+  const auto add = [&](int pictures) {
+    for (int i = 0; i < pictures; ++i) work.add(picture, noAttributes);
+    gl::finish();
+  };
+  gl::SplitTimer timer(false);
+  MotionSamples samples;
+  const auto restOf = [&](int first, int further) {
+    for (int frame = 0; frame < 16; ++frame) {
+      timer.begin();
+      gl::finish();  // llvmpipe draws tile by tile: a timestamp is that of the last tile
+      add(first);
+      timer.split();
+      gl::finish();
+      add(further * (samples.now() - 1));
+      for (const gl::SplitTimer::Times& times : timer.end(samples.now()))
+        if (times.label == samples.now()) samples.add(times.first, times.second, 8);
+      gl::finish();
+    }
+    return samples.now();
+  };
+  int pictures = 64;  // more than a 60th of a second
+  for (auto start = Clock::now(); add(pictures), gl::finish(), secondsSince(start) < 0.03; start = Clock::now())
+    pictures *= 2;
+  EXPECT_EQ(restOf(pictures, pictures / 64), 8);
+  EXPECT_EQ(restOf(pictures, pictures), 1);
 }
 
 /// Leaves of a pixel or two, cut out of a shining rectangle by a mask.

@@ -1,11 +1,13 @@
 // Scenes that move, in every technique: a renderer that follows the scene draws what a new one would, whatever it has
 // drawn before; lights and surfaces are where the time says.
+#include "base/angles.hpp"
 #include "base/data.hpp"
 #include "gl/pass.hpp"
 #include "irradiance_cache/irradiance_cache_frame.hpp"
 #include "render/renderer.hpp"
 #include "render/techniques.hpp"
 #include "scene/motion.hpp"
+#include "shared/bindings.h"
 #include "shared/irradiance_cache.h"
 #include "support/gl_fixture.hpp"
 #include "support/temp_folder.hpp"
@@ -17,7 +19,9 @@
 #include <bit>
 #include <cmath>
 #include <memory>
+#include <random>
 #include <string_view>
+#include <vector>
 
 namespace lucerna {
 namespace {
@@ -321,6 +325,86 @@ TEST_F(KeptColour, IsPackedAsASharedExponentTexel) {
       word |= static_cast<std::uint32_t>(steps) << kBits * k;
     }
     EXPECT_EQ(std::bit_cast<std::uint32_t>(found[i].w), word) << i;
+  }
+}
+
+struct Relight : test::SharedProgramsTest {};
+
+// A record's irradiance from what its paths have hit, against the sum in double precision: pi times the mean of
+// reflectance / pi times the irradiance of what stands for the hit, and of the path's other light. Slots may be empty,
+// or hold a record that found no room.
+TEST_F(Relight, SumsWhatPathsHaveHit) {
+  constexpr std::size_t kRecords = 5, kWithoutHits = 2, kSlots = 40, kWordsOfWork = 64, kWanted = 3;
+  std::mt19937 words(11);
+  const auto random = [&] { return static_cast<std::uint32_t>(words()); };
+  std::uniform_real_distribution<float> strength(0.0f, 3.0f);
+  const auto colour = [&] { return glm::vec3(strength(words), strength(words), strength(words)); };
+  std::vector<shared::CacheRecord> records(kRecords);
+  for (std::size_t r = 0; r < kRecords; ++r) {
+    records[r].state = r == kWithoutHits ? CACHE_FRONT : CACHE_FRONT | CACHE_KEPT;
+    records[r].irradiance = glm::vec3(-1.0f);
+  }
+  std::vector<std::uint32_t> slots(kSlots);
+  for (std::uint32_t& slot : slots)
+    slot = random() % (static_cast<std::uint32_t>(kRecords) + 3);  // 0: empty; beyond the records: no room
+  std::vector<glm::vec4> light(kRecords + 2);
+  for (glm::vec4& of : light) of = glm::vec4(colour(), 1.0f);
+  std::vector<shared::CacheHit> hits(kRecords * CACHE_HITS);
+  const auto packed = [&] { return (random() % 6 + 14) << 27 | (random() & 0x7ffffffu); };  // steps of 2^-10 to 2^-5
+  for (shared::CacheHit& hit : hits)
+    hit = {random() % (static_cast<std::uint32_t>(kSlots) + 1) | (random() % 3 == 0 ? CACHE_STALE : 0u), packed(),
+           packed(), 1.0f};
+  std::vector<std::uint32_t> work(kWordsOfWork);
+  work[kWanted] = kRecords;
+  shared::CascadeConstants grids{};
+  grids.referenceIrradiance = 7.3f;
+  shared::CacheConstants constants{};
+  constants.capacity = kRecords;
+
+  gl::Buffer recordBuffer("records", records.size() * sizeof records[0], records.data(), gl::Usage::dynamicRead);
+  const auto bufferOf = [](const auto& values) {
+    return gl::Buffer("values", values.size() * sizeof values[0], values.data(), gl::Usage::staticDraw);
+  };
+  const gl::Buffer hitBuffer = bufferOf(hits), workBuffer = bufferOf(work);
+  const gl::Buffer gridBuffer("grids", sizeof grids, &grids, gl::Usage::staticDraw),
+      constantsBuffer("constants", sizeof constants, &constants, gl::Usage::staticDraw);
+  const gl::BufferTexture slotTable("slots", gl::Format::r32ui, slots.size() * sizeof slots[0], slots.data()),
+      lights("light", gl::Format::rgba32f, light.size() * sizeof light[0], light.data());
+  recordBuffer.bindStorage(CACHE_RECORDS_BUFFER);
+  hitBuffer.bindStorage(CACHE_HITS_BUFFER);
+  workBuffer.bindStorage(CACHE_WORK_BUFFER);
+  gridBuffer.bindUniform(BLOCK_CASCADES);
+  constantsBuffer.bindUniform(BLOCK_CACHE);
+  slotTable.bind(UNIT_CACHE_SLOTS);
+  lights.bind(UNIT_CACHE_LIGHT);
+  const gl::Program& program =
+      library().loadCompute("relight", "irradiance_cache/relight.comp", IrradianceCache::lookupFlags({}));
+  {
+    const gl::ComputePass pass("relight");
+    program.use();
+    pass.dispatch({static_cast<int>(kRecords), 1, 1}, {64, 1, 1});
+  }
+  const std::vector<shared::CacheRecord> lit = recordBuffer.read<shared::CacheRecord>();
+
+  const auto unpacked = [](std::uint32_t word) {
+    return std::exp2(static_cast<int>(word >> 27) - 24) * glm::dvec3(word & 511u, word >> 9 & 511u, word >> 18 & 511u);
+  };
+  for (std::size_t r = 0; r < kRecords; ++r) {
+    if (r == kWithoutHits) {
+      EXPECT_EQ(lit[r].irradiance, glm::vec3(-1.0f));
+      EXPECT_EQ(lit[r].paths, 0u);
+      continue;
+    }
+    glm::dvec3 sum(0.0);
+    for (std::size_t i = 0; i < CACHE_HITS; ++i) {
+      const shared::CacheHit& hit = hits[r * CACHE_HITS + i];
+      sum += kPi * static_cast<double>(grids.referenceIrradiance) / 16.0 * unpacked(hit.light);
+      const std::uint32_t slot = hit.slot & CACHE_SLOT_MASK, holds = slot > 0 ? slots[slot - 1] : 0;
+      if (holds > 0 && holds <= kRecords) sum += unpacked(hit.reflectance) * glm::dvec3(light[holds - 1]);
+    }
+    for (int c = 0; c < 3; ++c)
+      EXPECT_NEAR(static_cast<double>(lit[r].irradiance[c]), sum[c] / CACHE_HITS, 1e-5 * sum[c] / CACHE_HITS) << r;
+    EXPECT_EQ(lit[r].paths, static_cast<std::uint32_t>(CACHE_HITS)) << r;
   }
 }
 

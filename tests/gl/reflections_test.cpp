@@ -90,6 +90,37 @@ TEST_F(ReflectionsTest, CoatsReflectAnEvenSkyByTheirAlbedo) {
       }
 }
 
+// Strips of a pixel's width, seen from a view in motion. The samples of a frame share what a coat's rays find: no less
+// light comes from pixels whose first sample falls beside the coat, and no more.
+TEST_F(ReflectionsTest, InMotionCoatsOfPartOfAPixelReflectTheirShare) {
+  constexpr double kStrip = 0.1;
+  SceneBuilder builder;
+  const int coat = builder.material(glm::vec3(0.0f)), matt = builder.material(glm::vec3(0.0f));
+  builder.materialAt(coat).specular = glm::vec3(0.5f);
+  builder.materialAt(coat).roughness = 0.1f;
+  for (int i = -40; i <= 40; ++i) builder.plate({2.0 * kStrip * i, 0, 0}, {0, 0, 4}, {0.5 * kStrip, 0, 0}, coat);
+  builder.plate({0, -0.01, 0}, {0, 0, 4}, {4, 0, 0}, matt);
+  builder.scene().sun.reset();
+  builder.scene().environment.emplace().radiance = glm::vec3(1.0f);
+  const auto viewAt = [](double x) { return lookingAt({x, 4, 0.01}, {x, 0, 0}, 0.6); };
+  const auto meanInMotion = [&](int samples) {
+    RenderSettings s = settings();
+    s.pixelSamples = 16;
+    s.motionSamples = samples;
+    s.reprojection = false;
+    Renderer renderer(context(), library(), builder.scene(), s);
+    renderer.renderToTheEnd(viewAt(0.0));
+    double sum = 0.0;
+    const int frames = 128 / samples;
+    for (int frame = 1; frame <= frames; ++frame) {
+      renderer.render(viewAt(8.13 * kStrip * frame / frames));
+      sum += meanOf(renderer.readRadiance()).y;
+    }
+    return sum / frames;
+  };
+  EXPECT_NEAR(meanInMotion(4) / meanInMotion(1), 1.0, 0.01);
+}
+
 // A ball of glass hides nothing of an even sky: what it does not reflect, it lets through.
 TEST_F(ReflectionsTest, GlassIsClear) {
   Scene scene;
