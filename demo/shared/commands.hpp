@@ -100,7 +100,7 @@ inline constexpr SettingCost kSolutionCost =
 /// Every deviation with its meaning.
 std::string deviationsHelp();
 
-/// A progress bar on a terminal's standard error for work longer than a second; silent elsewhere.
+/// On a terminal a progress bar on standard error for work longer than a second; elsewhere a line every 30 seconds.
 class Progress {
  public:
   Progress(std::string what, int total, bool quiet);
@@ -112,8 +112,8 @@ class Progress {
  private:
   std::string what_;
   int total_;
-  bool enabled_, drawn_ = false;
-  std::chrono::steady_clock::time_point start_;
+  bool enabled_, isTerminal_, drawn_ = false;
+  std::chrono::steady_clock::time_point start_, line_;
 };
 
 /// How far a solution is: what comes before the hemicubes, then those.

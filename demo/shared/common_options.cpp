@@ -49,18 +49,31 @@ void CommonOptions::writeJson(const nlohmann::ordered_json& value) const {
 }
 
 Progress::Progress(std::string what, int total, bool quiet)
-    : what_(std::move(what)), total_(total), enabled_(!quiet && isatty(STDERR_FILENO)), start_(Clock::now()) {}
+    : what_(std::move(what)),
+      total_(total),
+      enabled_(!quiet),
+      isTerminal_(isatty(STDERR_FILENO) != 0),
+      start_(Clock::now()),
+      line_(start_) {}
 
 Progress::~Progress() {
   if (drawn_) fmt::print(stderr, "\r\x1b[K");
 }
 
 void Progress::update(int done) {
+  if (!enabled_) return;
   const double seconds = secondsSince(start_);
-  if (!enabled_ || (seconds < 1.0 && !drawn_)) return;
+  const double rest = done > 0 ? seconds / done * (total_ - done) : 0.0;
+  if (!isTerminal_) {
+    constexpr double kBetweenLines = 30.0;
+    if (secondsSince(line_) < kBetweenLines) return;
+    fmt::print(stderr, "{}: {}/{}, {:.0f} s left\n", what_, done, total_, rest);
+    line_ = Clock::now();
+    return;
+  }
+  if (seconds < 1.0 && !drawn_) return;
   constexpr int kWidth = 30;
   const int filled = total_ > 0 ? kWidth * done / total_ : 0;
-  const double rest = done > 0 ? seconds / done * (total_ - done) : 0.0;
   fmt::print(stderr, "\r{} [{:#<{}}{:-<{}}] {}/{}, {:.0f} s left \x1b[K", what_, "", filled, "", kWidth - filled, done,
              total_, rest);
   std::fflush(stderr);
