@@ -193,11 +193,7 @@ bool Renderer::follow(const gl::Context& context, gl::ProgramLibrary& programs, 
   const bool movesCamerasAlone = change.meshes.empty() && !change.anyLight() && !change.materials && !change.media;
   if (movesCamerasAlone) return true;
   sceneMoves_ = true;
-  if (picture_) {
-    technique_ = techniqueNamed(settings_.technique).make(parts(context, programs, scene));
-    picture_ = dynamic_cast<PictureTechnique*>(technique_.get());
-    return true;
-  }
+  if (picture_) return picture_->follow(change);
   if (moved_) {
     Scene next = movedTo(scene, origin_);
     next.textures.clear();
@@ -589,7 +585,7 @@ bool Renderer::beginView(const Camera& camera, const Camera& volumeCamera) {
 void Renderer::render(const Camera& camera, const Camera& volumeCamera) {
   const bool moves = moves_ = beginView(camera, volumeCamera);
   if (!accumulates()) {
-    drawSample(0, {});
+    drawSample(0, {.isLive = true});
   } else if (!isSettled()) {
     for (int i = 0; i < (moves ? settings_.motionSamples : 1) && !isSettled(); ++i) {
       const int summed = antialiasing_.count();
