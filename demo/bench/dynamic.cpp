@@ -363,7 +363,7 @@ int runDynamic(DynamicOptions options) {
     ask(technique, options.picture);
   }
   for (const std::string& text : options.points) {
-    const bench::SweepPoint point = bench::parseSweepPoint(text);
+    const bench::SweepPoint point = bench::parseSweepPoint(text, "--point", true);
     options.picture.technique = point.picture.technique;
     PictureOptions picture = options.picture;
     picture.settings.insert(picture.settings.end(), point.picture.settings.begin(), point.picture.settings.end());

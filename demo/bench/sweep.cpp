@@ -164,11 +164,12 @@ std::vector<SweepPoint> boundPoints() {
           of("irradiance-cache", Bound::none, {gather, once})};
 }
 
-SweepPoint parseSweepPoint(const std::string& text, const std::string& option) {
+SweepPoint parseSweepPoint(const std::string& text, const std::string& option, bool withPath) {
   std::istringstream words(text);
   SweepPoint asked;
   words >> asked.picture.technique;
-  const std::vector<std::string> known = sweepTechniques();
+  std::vector<std::string> known = sweepTechniques();
+  if (withPath) known.emplace_back("path");
   if (std::find(known.begin(), known.end(), asked.picture.technique) == known.end())
     throwBadInput("{} '{}': expected \"TECHNIQUE [SETTING=VALUE]...\" with one of {}", option, text,
                   fmt::join(known, ", "));

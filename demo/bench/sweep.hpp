@@ -34,7 +34,7 @@ std::vector<std::string> sweepTechniques();
 std::vector<SweepPoint> sweepOf(const std::string& technique, bool shrink, double longestSide);
 /// "TECHNIQUE [SETTING=VALUE]...": a picture that was asked for. Throws Error(badInput) naming the option for what it
 /// cannot be.
-SweepPoint parseSweepPoint(const std::string& text, const std::string& option = "--point");
+SweepPoint parseSweepPoint(const std::string& text, const std::string& option = "--point", bool withPath = false);
 /// The bounds of the light propagation volume's transports.
 std::vector<SweepPoint> boundPoints();
 /// Corrected, and corrected with one deviation on at a time, for every technique that has the deviation.

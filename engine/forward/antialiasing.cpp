@@ -17,6 +17,8 @@ constexpr GLuint kRadianceUnit = 0, kDepthUnit = 1, kBeforeUnit = 2, kDistanceBe
 // without earlier frames), two nothing (6.8 %): bench dynamic --live --frames 8 --fps 20 --time 1 --size 160x120
 // --reference-samples 64, irradiance-cache.
 constexpr float kMostInMotion = 4.0f, kMostWhereSceneMoves = 2.0f;
+// Of path traced frames, whose noise is more than the blur of eight (docs/motion.md).
+constexpr float kMostPathsInMotion = 8.0f, kMostPathsWhereSceneMoves = 4.0f;
 }  // namespace
 
 void Antialiasing::resize(glm::ivec2 size) {
@@ -37,24 +39,30 @@ void Antialiasing::add(const gl::Texture& radiance, const gl::VertexArray& noAtt
   if (!sum_) {
     sum_.emplace("sum of frames", gl::Format::rgba32f, size_);
     sumTarget_.emplace("sum of frames", std::array<const gl::Texture*, 1>{&*sum_});
-    scale_ = &programs_->loadRaster("scaled picture", "lib/fullscreen.vert", "forward/scale.frag");
   }
   gl::RasterState state;
   if (count_ > 0) state.blend = gl::Blend::add;
   const gl::RasterPass pass("sum of frames", *sumTarget_, state);
-  scale_->use();
-  scale_->set("factor", 1.0f);
-  radiance.bind(kRadianceUnit);
-  gl::drawFullScreen(noAttributes);
+  drawScaled(radiance, 1.0f, noAttributes);
   ++count_;
 }
 
-void Antialiasing::writeMean(const gl::Framebuffer& target, const gl::VertexArray& noAttributes) const {
+void Antialiasing::writeMean(const gl::Framebuffer& target, const gl::VertexArray& noAttributes) {
   CHECK(count_ > 0, "no frames");
   const gl::RasterPass pass("mean of frames", target, {});
+  drawScaled(*sum_, 1.0f / static_cast<float>(count_), noAttributes);
+}
+
+void Antialiasing::writeShown(const gl::Framebuffer& target, const gl::VertexArray& noAttributes) {
+  const gl::RasterPass pass("earlier frames", target, {});
+  drawScaled(shown(), 1.0f, noAttributes);
+}
+
+void Antialiasing::drawScaled(const gl::Texture& from, float factor, const gl::VertexArray& noAttributes) {
+  if (!scale_) scale_ = &programs_->loadRaster("scaled picture", "lib/fullscreen.vert", "forward/scale.frag");
   scale_->use();
-  scale_->set("factor", 1.0f / static_cast<float>(count_));
-  sum_->bind(kRadianceUnit);
+  scale_->set("factor", factor);
+  from.bind(kRadianceUnit);
   gl::drawFullScreen(noAttributes);
 }
 
@@ -74,8 +82,9 @@ void Antialiasing::makeHistory() {
 void Antialiasing::accumulate(const Frame& frame, bool moves, bool reprojects, int most,
                               const gl::VertexArray& noAttributes) {
   if (!history_) makeHistory();
-  const std::size_t before = current_;
-  current_ = 1 - current_;
+  const std::size_t before = frame.isPathTraced && !moves ? atRest_ : current_;
+  current_ = 1 - before;
+  if (moves || !hasHistory_) atRest_ = current_;
   const bool starts = !hasHistory_ || (moves && !reprojects);
   const gl::RasterPass pass("reprojection", history_->targets[current_], {});
   const gl::Program& program = *history_->program;
@@ -92,7 +101,13 @@ void Antialiasing::accumulate(const Frame& frame, bool moves, bool reprojects, i
   program.set("moves", moves ? 1 : 0);
   program.set("starts", starts ? 1 : 0);
   program.set("most", static_cast<float>(std::max(most, 1)));
-  program.set("mostInMotion", frame.sceneMoves ? kMostWhereSceneMoves : kMostInMotion);
+  program.set("frames", frame.frames);
+  program.set("share", frame.share);
+  program.set("isPathTraced", frame.isPathTraced ? 1 : 0);
+  const float mostFrames = frame.isPathTraced ? frame.sceneMoves ? kMostPathsWhereSceneMoves : kMostPathsInMotion
+                           : frame.sceneMoves ? kMostWhereSceneMoves
+                                              : kMostInMotion;
+  program.set("mostInMotion", frame.frames * mostFrames);
   frame.radiance.bind(kRadianceUnit);
   frame.depth.bind(kDepthUnit);
   history_->radiance[before].bind(kBeforeUnit);

@@ -2,8 +2,8 @@
 //
 // Still: the frames' plain mean, which converges to the filtered picture. Moving: the mean so far is found in the frame
 // before by the visible surface's place, and limited to what the new frame shows around the pixel, by mean and standard
-// deviation [Salvi2016]; where another surface was seen before, it is dropped. Pictures are linear radiance, in scene
-// units.
+// deviation [Salvi2016]; where another surface was seen before, it is dropped. A path traced picture in motion is
+// carried on in the same way, without that limit. Pictures are linear radiance, in scene units.
 #pragma once
 
 #include "gl/objects.hpp"
@@ -25,7 +25,7 @@ class Antialiasing {
   void clear() { count_ = 0; }
   void add(const gl::Texture& radiance, const gl::VertexArray& noAttributes);
   int count() const { return count_; }
-  void writeMean(const gl::Framebuffer& target, const gl::VertexArray& noAttributes) const;
+  void writeMean(const gl::Framebuffer& target, const gl::VertexArray& noAttributes);
 
   /// What a view in motion has to know of a frame.
   struct Frame {
@@ -35,13 +35,19 @@ class Antialiasing {
     glm::dvec3 camera;
     glm::dvec2 offset;  ///< of the frame's samples from there, in pixels
     bool sceneMoves;  ///< surfaces or lights are others than in the frame before
+    float frames = 1.0f;  ///< that `radiance` is the mean of
+    /// Its noise would be taken for another surface's colours, and is not limited. At rest `radiance` is the mean since
+    /// the motion's end, and `share` of the frames shown then counts beside it.
+    bool isPathTraced = false;
+    float share = 1.0f;
   };
-  /// Adds a frame to the running mean of at most `most` frames. `moves`: the view differs from that of the frame
-  /// before. `reprojects`: if not, a moving view shows its new frame alone.
+  /// Adds a frame to the running mean of at most `most` frames; the first one alone starts it. `moves`: the view
+  /// differs from that of the frame before. `reprojects`: if not, a moving view shows its new frame alone.
   void accumulate(const Frame& frame, bool moves, bool reprojects, int most, const gl::VertexArray& noAttributes);
   bool hasShown() const { return history_.has_value(); }
   /// The running mean; alpha: the number of frames in it.
   const gl::Texture& shown() const { return history_->radiance[current_]; }
+  void writeShown(const gl::Framebuffer& target, const gl::VertexArray& noAttributes);
   void forget();
 
   std::size_t gpuBytes() const;
@@ -53,6 +59,7 @@ class Antialiasing {
     const gl::Program* program;
   };
   void makeHistory();
+  void drawScaled(const gl::Texture& from, float factor, const gl::VertexArray& noAttributes);
 
   gl::ProgramLibrary* programs_;
   glm::ivec2 size_{0};
@@ -61,7 +68,7 @@ class Antialiasing {
   std::optional<gl::Framebuffer> sumTarget_;
   const gl::Program* scale_ = nullptr;
   std::optional<History> history_;  ///< only where frames are shown one by one
-  std::size_t current_ = 0;
+  std::size_t current_ = 0, atRest_ = 0;  ///< of history_; atRest_: as it was shown last in motion
   bool hasHistory_ = false;
   glm::dmat4 clip_{1.0};
 };

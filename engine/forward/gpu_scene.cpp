@@ -15,6 +15,7 @@
 #include <cstddef>
 #include <limits>
 #include <map>
+#include <utility>
 
 namespace lucerna {
 
@@ -150,7 +151,6 @@ GpuScene::GpuScene(const Scene& scene, const SceneFeatures& features, const gl::
     const auto first = scene.indices.begin() + mesh->firstIndex;
     indices.insert(indices.end(), first, first + mesh->indexCount);
     (isMasked(mesh) ? all_.masked_ : all_.opaque_).push_back(draw);
-    if (!isMasked(mesh)) opaqueIndexCount_ = static_cast<std::uint32_t>(indices.size());
   }
   CHECK(all_.masked_.empty() || features.alphaMasks, "{} masked meshes", all_.masked_.size());
 
@@ -175,6 +175,7 @@ void GpuScene::setValues(Surface& surface, const Material& material) const {
 
 void GpuScene::update(const std::vector<std::size_t>& meshes) {
   for (std::size_t i = 0; i < surfaces_.size(); ++i) setValues(surfaces_[i], scene_->materials[i]);
+  if (!meshes.empty()) ++poses_;
   for (const std::size_t index : meshes) {
     const Mesh& mesh = scene_->meshes[index];
     const VertexRange range = vertexRange(*scene_, mesh);
@@ -182,6 +183,7 @@ void GpuScene::update(const std::vector<std::size_t>& meshes) {
     for (std::vector<Draw>* draws : {&all_.opaque_, &all_.masked_})
       for (Draw& draw : *draws) {
         if (draw.firstInScene != mesh.firstIndex) continue;
+        if (!std::exchange(draw.moves, true)) ++movingMeshes_;
         draw.centre = glm::vec3(mesh.bounds.centre());
         draw.halfExtent = glm::vec3(0.5 * mesh.bounds.extent());
         all_.indices_.upload(draw.firstIndex * sizeof(std::uint32_t), mesh.indexCount * sizeof(std::uint32_t),
@@ -264,15 +266,26 @@ void GpuScene::draw(const SurfacePrograms& programs, const View& view, const Sel
   if (isotropic) gl::Sampler::unbind(UNIT_DIFFUSE);
 }
 
-void GpuScene::drawDepth(const SurfacePrograms& programs) const {
+void GpuScene::drawDepth(const SurfacePrograms& programs, Meshes meshes) const {
+  const auto isDrawn = [&](const Draw& draw) {
+    return meshes == Meshes::all || draw.moves == (meshes == Meshes::moving);
+  };
   all_.vertexArray_.bind();
-  if (opaqueIndexCount_ > 0) {
-    programs.opaque->use();
-    drawRange({0, opaqueIndexCount_, 0, {}, {}, 0});
+  if (!all_.opaque_.empty()) programs.opaque->use();
+  // Meshes that follow one another in the index buffer are one call.
+  std::uint32_t first = 0, count = 0;
+  for (const Draw& draw : all_.opaque_) {
+    if (!isDrawn(draw)) continue;
+    if (draw.firstIndex != first + count) {
+      if (count > 0) gl::drawIndexedTriangles(first, count);
+      first = draw.firstIndex, count = 0;
+    }
+    count += draw.indexCount;
   }
-  if (all_.masked_.empty()) return;
-  programs.masked->use();
+  if (count > 0) gl::drawIndexedTriangles(first, count);
+  if (!all_.masked_.empty()) programs.masked->use();
   for (const Draw& draw : all_.masked_) {
+    if (!isDrawn(draw)) continue;
     textures_[static_cast<std::size_t>(surfaces_[static_cast<std::size_t>(draw.surface)].maskTexture)].bind(UNIT_MASK);
     drawRange(draw);
   }

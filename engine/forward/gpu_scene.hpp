@@ -47,6 +47,7 @@ class GpuScene {
       int surface;
       glm::vec3 centre, halfExtent;
       std::uint32_t firstInScene;  ///< of Scene::indices
+      bool moves = false;  ///< has ever
     };
     gl::Buffer indices_;
     gl::VertexArray vertexArray_;
@@ -61,8 +62,9 @@ class GpuScene {
     bool anisotropic = true;  ///< filter colours as the settings say; false: what is drawn is not looked at
   };
   void draw(const SurfacePrograms& programs, const View& view, const Selection* only = nullptr) const;
-  /// Only positions for opaque meshes, in one call; masked meshes with their masks.
-  void drawDepth(const SurfacePrograms& programs) const;
+  enum class Meshes { all, still, moving };  ///< moving: those that update() has ever named
+  /// Only positions for opaque meshes, in one call if all are drawn; masked meshes with their masks.
+  void drawDepth(const SurfacePrograms& programs, Meshes meshes) const;
 
   /// The triangles that may cover the centre of a texel of a map with size x size texels under a parallel projection,
   /// in the order in which all are drawn: the map is the same, bit by bit. They are found on the CPU.
@@ -72,6 +74,8 @@ class GpuScene {
 
   /// The scene's vertices and faces of these meshes, and what its materials' textures do not say, are others.
   void update(const std::vector<std::size_t>& meshes);
+  std::size_t poses() const { return poses_; }  ///< so far: calls of update() with any meshes, and the first pose
+  std::size_t movingMeshes() const { return movingMeshes_; }  ///< meshes that it has ever named
 
   const Scene& scene() const { return *scene_; }
   const SceneFeatures& features() const { return features_; }
@@ -102,7 +106,7 @@ class GpuScene {
   std::optional<gl::Texture> white_, coats_;
   std::map<TextureWraps, gl::Sampler> isotropic_;  ///< of colours, if textures are filtered anisotropically
   std::vector<Surface> surfaces_;
-  std::uint32_t opaqueIndexCount_ = 0;  ///< opaque meshes come first in the index buffer
+  std::size_t poses_ = 1, movingMeshes_ = 0;
   bool isSoftware_;  ///< the renderer
 };
 

@@ -8,9 +8,9 @@
 
 namespace lucerna {
 
-LocalLights::LocalLights(gl::ProgramLibrary& programs, const GpuScene& scene, const Settings& settings,
-                         const std::vector<LightViews>& spots, const std::vector<LightViews>& points,
-                         const std::vector<LightViews>& plain) {
+void LocalLights::place(gl::ProgramLibrary& programs, const GpuScene& scene, const Settings& settings,
+                        const std::vector<LightViews>& spots, const std::vector<LightViews>& points,
+                        const std::vector<LightViews>& plain) {
   CHECK(std::max(spots.size(), points.size()) <= LIGHTS_MAX_SHADOWS, "{} spots, {} points", spots.size(),
         points.size());
   const auto areSoft = [&](const std::vector<LightViews>& lamps) {
@@ -21,6 +21,8 @@ LocalLights::LocalLights(gl::ProgramLibrary& programs, const GpuScene& scene, co
   };
   spotsAreSoft_ = areSoft(spots);
   pointsAreSoft_ = areSoft(points);
+  spotViews_.clear();
+  pointViews_.clear();
   shared::LightConstants constants{};
   for (std::size_t i = 0; i < spots.size(); ++i) {
     const LightViews& light = spots[i];
@@ -56,17 +58,23 @@ LocalLights::LocalLights(gl::ProgramLibrary& programs, const GpuScene& scene, co
     lamps.push_back({light.place(), static_cast<float>(light.cosInner), glm::vec3(light.direction),
                      light.omnidirectional() ? -2.0f : static_cast<float>(light.cosOuter), light.intensity,
                      static_cast<float>(light.radius)});
+  plain_ = {};
   if (!lamps.empty())
     plain_ = gl::Buffer("lamps without shadows", lamps.size() * sizeof lamps[0], lamps.data(), gl::Usage::staticDraw);
+  const auto makeMaps = [&](std::optional<LayeredDepth>& maps, const char* name, const LayeredDepth::Shape& shape) {
+    if (shape.layers == 0) maps.reset();
+    else if (!maps || maps->shape() != shape) maps.emplace(programs, scene, name, shape);
+  };
   const int spotLayers = static_cast<int>(spotViews_.size()), pointLayers = static_cast<int>(pointViews_.size());
-  if (spotLayers > 0)
-    spotShadows_.emplace(
-        programs, scene, "spot shadows",
-        LayeredDepth::Shape{gl::TextureKind::array, settings.spotSize, spotLayers, spotLayers, true, spotsAreSoft_});
-  if (pointLayers > 0)
-    pointShadows_.emplace(
-        programs, scene, "point shadows",
-        LayeredDepth::Shape{gl::TextureKind::cubeArray, settings.pointSize, pointLayers, 6, true, pointsAreSoft_});
+  makeMaps(spotShadows_, "spot shadows",
+           {gl::TextureKind::array, settings.spotSize, spotLayers, 1, true, spotsAreSoft_});
+  makeMaps(pointShadows_, "point shadows",
+           {gl::TextureKind::cubeArray, settings.pointSize, pointLayers, 6, true, pointsAreSoft_});
+}
+
+void LocalLights::forget() {
+  if (spotShadows_) spotShadows_->forget();
+  if (pointShadows_) pointShadows_->forget();
 }
 
 void LocalLights::bindForShading() const {

@@ -1,5 +1,4 @@
-// Spot and omnidirectional lights of a scene for forward shading: their uniform block and their shadow maps. Lights do
-// not move.
+// Spot and omnidirectional lights of a scene for forward shading: their uniform block and their shadow maps.
 #pragma once
 
 #include "forward/layered_depth.hpp"
@@ -22,9 +21,10 @@ class LocalLights {
   };
   static bool isNeeded(const SceneFeatures& features) { return features.spotLights || features.pointLights; }
 
-  LocalLights(gl::ProgramLibrary& programs, const GpuScene& scene, const Settings& settings,
-              const std::vector<LightViews>& spots, const std::vector<LightViews>& points,
-              const std::vector<LightViews>& plain);
+  /// Where the lamps are; maps are kept where as many lamps have some. `plain`: those without maps.
+  void place(gl::ProgramLibrary& programs, const GpuScene& scene, const Settings& settings,
+             const std::vector<LightViews>& spots, const std::vector<LightViews>& points,
+             const std::vector<LightViews>& plain);
 
   /// Whether maps of a kind are compared with the receiver's plane: any lamp has a size, and so a penumbra, or is far
   /// away, where the offset of receivers would exceed what stands on a wide floor. All of a kind are filtered alike.
@@ -33,8 +33,9 @@ class LocalLights {
   bool hasSpots() const { return spotShadows_.has_value(); }
   bool hasPoints() const { return pointShadows_.has_value(); }
   bool hasPlainLamps() const { return plain_.bytes() > 0; }
-  void recordSpots(const GpuScene& scene) const { spotShadows_->record(scene, spotViews_); }
-  void recordPoints(const GpuScene& scene) const { pointShadows_->record(scene, pointViews_); }
+  void recordSpots(const GpuScene& scene) { spotShadows_->record(scene, spotViews_); }
+  void recordPoints(const GpuScene& scene) { pointShadows_->record(scene, pointViews_); }
+  void forget();
   /// Binds blocks 3 and PLAIN_LAMPS_BINDING, and units 10 (spots) and 11 (points) for shaders/forward/lights.glsl.
   void bindForShading() const;
   std::size_t gpuBytes() const;

@@ -2,8 +2,7 @@
 // [LPV2015, 6.3.1].
 #pragma once
 
-#include "forward/gpu_scene.hpp"
-#include "gl/pass.hpp"
+#include "forward/depth_target.hpp"
 
 namespace lucerna {
 
@@ -16,16 +15,16 @@ class ShadowMap {
 
   ShadowMap(gl::ProgramLibrary& programs, const GpuScene& scene, const Settings& settings);
 
-  /// Draws the scene into it; the frame's uniform block must be bound.
-  void record(const GpuScene& scene) const;
+  /// Draws into it what has changed since the last time; the frame's uniform block, with this view, must be bound.
+  void record(const GpuScene& scene, const glm::mat4& clipFromWorld);
+  void forget() { target_.forget(); }
   /// Depth in [0,1], comparison on: a sampler2DShadow.
-  const gl::Texture& depth() const { return depth_; }
-  std::size_t gpuBytes() const { return depth_.bytes(); }
+  const gl::Texture& depth() const { return target_.depth(); }
+  std::size_t gpuBytes() const { return depth().bytes() + target_.keptBytes(); }
 
  private:
   SurfacePrograms programs_;
-  gl::Texture depth_;
-  gl::Framebuffer framebuffer_;
+  DepthTarget target_;
 };
 
 }  // namespace lucerna

@@ -22,7 +22,7 @@ SunShadow::SunShadow(gl::ProgramLibrary& programs, const GpuScene& scene, const 
 void SunShadow::record(const GpuScene& gpuScene, const SunFrustum& whole, const Camera& camera, double aspect,
                        double near) {
   if (map_) {
-    map_->record(gpuScene);
+    map_->record(gpuScene, glm::mat4(whole.clipFromWorld));
     return;
   }
   const Scene& scene = gpuScene.scene();
@@ -37,6 +37,11 @@ void SunShadow::record(const GpuScene& gpuScene, const SunFrustum& whole, const 
   constants_.upload(0, sizeof constants, &constants);
   constants_.bindUniform(BLOCK_SUN_CASCADES);
   cascades_->record(gpuScene, views);
+}
+
+void SunShadow::forget() {
+  if (map_) map_->forget();
+  if (cascades_) cascades_->forget();
 }
 
 void SunShadow::bindForShading() const {

@@ -32,8 +32,10 @@ class SunShadow {
 
   /// Whether the map depends on the camera, and so must be drawn again when it moves.
   bool followsCamera() const { return cascades_.has_value(); }
-  /// `whole`: of the scene; aspect: of the picture, width over height; near: the camera's near plane, scene units.
+  /// Draws what has changed since the last time. `whole`: of the scene; aspect: of the picture, width over height;
+  /// near: the camera's near plane, scene units.
   void record(const GpuScene& scene, const SunFrustum& whole, const Camera& camera, double aspect, double near);
+  void forget();
   void bindForShading() const;
 
   /// For the flag SUN_CASCADES: 0 where one map serves the whole scene.

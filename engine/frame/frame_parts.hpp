@@ -57,6 +57,7 @@ struct FrameView {
 struct FrameEffort {
   bool wholePicture = false;  ///< all samples at once
   bool fadesIn = true;  ///< new contributions fade in, so that nothing flickers while the camera moves
+  bool isLive = false;  ///< shown after others, which may show through while the view moves
   bool isFurtherSample = false;  ///< of a view that this frame has drawn: light that does not depend on it is known
 };
 

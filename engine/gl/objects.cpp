@@ -223,6 +223,24 @@ void Texture::create(const std::string& name, const Sampling& s) {
   applySampling(s, target(), glTexParameteri, glTexParameterf, glTexParameterfv);
 }
 
+Texture Texture::layers(const std::string& name, int first, int count) const {
+  CHECK(first >= 0 && count > 0 && first + count <= size_.z, "layers {} to {} of {}", first, first + count, size_.z);
+  Texture part;
+  part.kind_ = kind_;
+  part.format_ = format_;
+  part.size_ = {size_.x, size_.y, count};
+  GLuint id = 0;
+  glGenTextures(1, &id);
+  part.handle_ = decltype(part.handle_)(id);
+  glTextureView(id, target(), handle_.id(), raw(format_), 0, static_cast<GLuint>(levels_), static_cast<GLuint>(first),
+                static_cast<GLuint>(count));
+  throwIfError(name);
+  glActiveTexture(GL_TEXTURE0 + kEditUnit);
+  glBindTexture(target(), id);
+  label(GL_TEXTURE, id, name);
+  return part;
+}
+
 glm::ivec3 Texture::levelSize(int level) const {
   glm::ivec3 size = glm::max(size_ >> level, glm::ivec3(1));
   if (target() == GL_TEXTURE_2D_ARRAY) size.z = size_.z;  // the number of layers stays
@@ -348,6 +366,15 @@ void copyTexels(const Texture& from, glm::ivec2 fromCorner, const Texture& to, g
   to.settle(Barrier::textureUpdate);
   glCopyImageSubData(from.id(), raw(from.kind()), 0, fromCorner.x, fromCorner.y, 0, to.id(), raw(to.kind()), 0,
                      toCorner.x, toCorner.y, 0, size.x, size.y, 1);
+}
+
+void copyTexels(const Texture& from, const Texture& to) {
+  CHECK(from.format() == to.format() && from.size() == to.size(), "formats {:#x} and {:#x}", raw(from.format()),
+        raw(to.format()));
+  from.settle(Barrier::textureUpdate);
+  to.settle(Barrier::textureUpdate);
+  glCopyImageSubData(from.id(), raw(from.kind()), 0, 0, 0, 0, to.id(), raw(to.kind()), 0, 0, 0, 0, from.size().x,
+                     from.size().y, from.size().z);
 }
 
 void clearToZero(std::span<const Texture* const> textures, bool haveClearTexture) {

@@ -136,13 +136,18 @@ class Texture {
   Texture(Texture&&) noexcept = default;
   Texture& operator=(Texture&&) noexcept = default;
 
+  /// Layers of an array, or faces of cube maps, as a texture of their own that shares this one's storage.
+  Texture layers(const std::string& name, int first, int count) const;
+  /// Another of this format, size, kind and single level.
+  Texture sameShape(const std::string& name) const { return {name, format_, size_, {}, 1, kind_}; }
+
   GLuint id() const { return handle_.id(); }
   TextureKind kind() const { return kind_; }
   Format format() const { return format_; }
   glm::ivec3 size() const { return size_; }
   glm::ivec2 size2d() const { return {size_.x, size_.y}; }
   int levels() const { return levels_; }
-  std::size_t bytes() const;  ///< of all levels; zero when moved from
+  std::size_t bytes() const;  ///< of all levels, shared ones too; zero when moved from
 
   void upload(Texels texels, const void* data, int level = 0);
   /// Level 0 from a buffer with texels in the texture's own format, starting at `offset`.
@@ -197,6 +202,8 @@ class BufferTexture {
 
 /// Copies texels of level 0 between 2D textures of the same format.
 void copyTexels(const Texture& from, glm::ivec2 fromCorner, const Texture& to, glm::ivec2 toCorner, glm::ivec2 size);
+/// Level 0 of a texture into one of the same format and size.
+void copyTexels(const Texture& from, const Texture& to);
 
 /// Sets every texel of every level of every listed texture to zero: ARB_clear_texture if available, else an upload of
 /// zeros.

@@ -123,7 +123,7 @@ void Renderer::makeLights(const gl::Context& context, gl::ProgramLibrary& progra
     largeParts_.reset();
   }
   if (scene.sun) sunFrustum_ = fitSunFrustum(drawn, scene.sun->direction);
-  if (!localLights_) chooseLamps(programs);
+  if (!lampShadowsMade_) chooseLamps(programs);
   if (showsDirect()) makeShadowMaps(programs);
   if (!technique_ && technique.drawsSurfaces && technique.isNeeded(settings_, features_))
     technique_ = technique.make(parts(context, programs, scene));
@@ -194,11 +194,7 @@ bool Renderer::follow(const gl::Context& context, gl::ProgramLibrary& programs, 
   const bool movesCamerasAlone = change.meshes.empty() && !change.anyLight() && !change.materials && !change.media;
   if (movesCamerasAlone) return true;
   sceneMoves_ = true;
-  if (picture_) {
-    technique_ = techniqueNamed(settings_.technique).make(parts(context, programs, scene));
-    picture_ = dynamic_cast<PictureTechnique*>(technique_.get());
-    return true;
-  }
+  if (picture_) return picture_->follow(change);
   if (moved_) {
     Scene next = movedTo(scene, origin_);
     next.textures.clear();
@@ -208,8 +204,8 @@ bool Renderer::follow(const gl::Context& context, gl::ProgramLibrary& programs, 
   traced_.update(change.meshes);
   if (technique_ && !technique_->follow(change)) technique_.reset();
   shadowRays_.reset();
-  if (!change.meshes.empty() || change.lamps) localLights_.reset();
-  if (!change.meshes.empty() || change.sun) sunShadow_.reset();
+  if (!change.meshes.empty() || change.lamps) lampShadowsMade_ = false;
+  if (!change.meshes.empty() || change.sun) sunShadowMade_ = false;
   environmentView_.reset();
   makeLights(context, programs, scene);
   return true;
@@ -309,24 +305,24 @@ void Renderer::makeShadowMaps(gl::ProgramLibrary& programs) {
     std::vector<LightViews> lamps = spots_;
     lamps.insert(lamps.end(), points_.begin(), points_.end());
     lamps.insert(lamps.end(), plainLamps_.begin(), plainLamps_.end());
-    if (!lamps.empty() && !localLights_)
-      localLights_.emplace(programs, *gpuScene_, settings_.lights, std::vector<LightViews>{}, std::vector<LightViews>{},
-                           lamps);
+    if (lamps.empty() || lampShadowsMade_) return;
+    if (!localLights_) localLights_.emplace();
+    localLights_->place(programs, *gpuScene_, settings_.lights, {}, {}, lamps);
     return;
   }
-  if (SunShadow::isNeeded(features_) && !sunShadow_) {
+  if (SunShadow::isNeeded(features_) && !sunShadowMade_) {
     SunShadow::Settings shadow = settings_.shadow;
     if (shadow.cascades.cascades == SunCascadeSettings::kAuto)
       shadow.cascades.cascades = neededCascades(gpuScene_->scene(), largeParts(),
                                                 std::max(sunFrustum_.width, sunFrustum_.height) / shadow.size);
-    sunShadow_.emplace(programs, *gpuScene_, shadow);
-    sunShadowMade_ = false;
+    const int cascades = shadow.cascades.cascades > 1 ? shadow.cascades.cascades : 0;
+    if (!sunShadow_ || sunShadow_->cascades() != cascades) sunShadow_.emplace(programs, *gpuScene_, shadow);
   }
-  if (LocalLights::isNeeded(features_) && !localLights_) {
-    lampShadowsMade_ = false;
+  if (LocalLights::isNeeded(features_) && !lampShadowsMade_) {
     LocalLights::Settings lamps = settings_.lights;
     lamps.penumbrae = settings_.shadow.filter == ShadowFilter::pcss;
-    localLights_.emplace(programs, *gpuScene_, lamps, spots_, points_, plainLamps_);
+    if (!localLights_) localLights_.emplace();
+    localLights_->place(programs, *gpuScene_, lamps, spots_, points_, plainLamps_);
   }
 }
 
@@ -423,10 +419,16 @@ void Renderer::apply(const RenderSettings& settings) {
 }
 
 void Renderer::forget() {
-  sunShadowMade_ = lampShadowsMade_ = false;
+  forgetShadows();
   view_.reset();
   antialiasing_.forget();
   if (technique_) technique_->forget();
+}
+
+void Renderer::forgetShadows() {
+  sunShadowMade_ = lampShadowsMade_ = false;
+  if (sunShadow_) sunShadow_->forget();
+  if (localLights_) localLights_->forget();
 }
 
 int Renderer::rayShadowedLamps() const {
@@ -436,16 +438,16 @@ int Renderer::rayShadowedLamps() const {
 }
 
 void Renderer::recordShadows(const Camera& camera, bool viewIsNew) {
-  const bool sunIsMade = settings_.reuse && sunShadowMade_, lampsAreMade = settings_.reuse && lampShadowsMade_;
-  if (sunShadow_ && ((viewIsNew && sunShadow_->followsCamera()) || !sunIsMade)) {
+  if (!settings_.reuse) forgetShadows();
+  if (sunShadow_ && ((viewIsNew && sunShadow_->followsCamera()) || !sunShadowMade_)) {
     const gl::TimeQuery::Scope stage(timer_, "shadow");
     sunShadow_->record(*gpuScene_, sunFrustum_, camera, aspect(), near_);
   }
-  if (localLights_ && localLights_->hasSpots() && !lampsAreMade) {
+  if (localLights_ && localLights_->hasSpots() && !lampShadowsMade_) {
     const gl::TimeQuery::Scope stage(timer_, "spot shadows");
     localLights_->recordSpots(*gpuScene_);
   }
-  if (localLights_ && localLights_->hasPoints() && !lampsAreMade) {
+  if (localLights_ && localLights_->hasPoints() && !lampShadowsMade_) {
     const gl::TimeQuery::Scope stage(timer_, "point shadows");
     localLights_->recordPoints(*gpuScene_);
   }
@@ -585,7 +587,7 @@ bool Renderer::beginView(const Camera& camera, const Camera& volumeCamera) {
 void Renderer::render(const Camera& camera, const Camera& volumeCamera) {
   const bool moves = moves_ = beginView(camera, volumeCamera);
   if (!accumulates()) {
-    drawSample(0, {});
+    drawSample(0, {.isLive = true});
   } else if (!isSettled()) {
     const bool measures = moves && settings_.motionSamples == 0;
     if (measures) sampleTimer_.begin();

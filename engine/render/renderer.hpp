@@ -132,6 +132,7 @@ class Renderer {
   void bindFrameConstants(const FrameView& view);
   void bindFrameConstants(const shared::FrameConstants& constants);
   void recordShadows(const Camera& camera, bool viewIsNew);
+  void forgetShadows();  ///< all are drawn again
   void drawDepth(const gl::Framebuffer& target, const FrameView& view);
   /// The multisampled target, or the picture itself.
   const gl::Framebuffer& surfaceTarget();
@@ -178,11 +179,12 @@ class Renderer {
   const gl::Program* toneMap_ = nullptr;
   const gl::Texture* shown_ = &radiance_;
 
-  // Shadow maps of direct light. They are drawn once, except for the sun's cascades, which follow the camera.
+  // Shadow maps of direct light. They are drawn again where meshes or lights have moved, and the sun's cascades follow
+  // the camera.
   std::optional<SunShadow> sunShadow_;
   std::optional<LocalLights> localLights_;
   std::optional<ShadowRays> shadowRays_;  ///< instead of maps
-  bool sunShadowMade_ = false, lampShadowsMade_ = false;
+  bool sunShadowMade_ = false, lampShadowsMade_ = false;  ///< as meshes and lights are now
 
   std::optional<EnvironmentView> environmentView_;
   gl::PictureChunks surfaceChunks_;

@@ -68,7 +68,7 @@ std::span<const Setting> sharedSettings() {
        "take half of its time, or what is left of 1/60 s",
        "", uniform, "", "", "textures"},
       {"picture.reprojection", boolean(FRAME_FIELD(reprojection)), "",
-       "while the view moves, earlier frames smooth edges too", "[Salvi2016]", uniform, "", "", "textures"},
+       "while the view moves, earlier frames smooth edges too, and noise", "[Salvi2016]", uniform, "", "", "all"},
       {"frame.reuse", boolean(FRAME_FIELD(reuse)), "",
        "reuse unchanged results of the previous frame: maps, volume, cache", "", uniform, "", "", "textures"},
       {"exposure", optionalNumber(FRAME_FIELD(exposure), 1e-12, 1e12), "", "multiplies radiance before tone mapping",

@@ -2,7 +2,6 @@
 #include "lib/layered_triangle.glsl"
 layout(triangles, invocations = LAYERS) in;
 layout(triangle_strip, max_vertices = 3) out;
-uniform int firstLayer;
 #if ALPHA_MASK
 in vec2 gTexCoord[];
 centroid out vec2 vTexCoord;
@@ -17,7 +16,7 @@ void main() {
 #endif
   for (int i = 0; i < 3; ++i) {
     gl_Position = clip[i];
-    gl_Layer = firstLayer + gl_InvocationID;
+    gl_Layer = gl_InvocationID;
 #if ALPHA_MASK
     vTexCoord = gTexCoord[i];
 #endif

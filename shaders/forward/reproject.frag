@@ -1,8 +1,9 @@
 // Adds a frame to the running mean of those before it (engine/forward/antialiasing.hpp).
 // In motion each pixel's surface, the nearest of the pixel's neighbourhood so that edges move with what is before them,
 // is looked for where the frame before showed it. The mean found there is limited to the new frame's own range around
-// the pixel: mean and kDeviations standard deviations of 3x3 pixels [Salvi2016]. All in linear radiance, as a camera
-// adds up light: a mean of colours compressed by brightness is too dark at bright edges.
+// the pixel: mean and kDeviations standard deviations of 3x3 pixels [Salvi2016]. Not that of path traced frames: nine
+// noisy pixels do not know the range, and may all be black. All in linear radiance, as a camera adds up light: a mean
+// of colours compressed by brightness is too dark at bright edges.
 #include "lib/clamped_int.glsl"
 layout(binding = 0) uniform sampler2D radianceTexture;
 layout(binding = 1) uniform sampler2D depthTexture;
@@ -12,23 +13,27 @@ uniform mat4 beforeFromClip, beforeFromFar;  // from the frame's clip space; far
 uniform vec4 inverseDistance;                // times a place in clip space: 1 over its distance along the view
 uniform vec2 offset;                         // of the frame's samples from pixels' centres, in pixels
 uniform int moves, starts;                   // the view differs from the frame before; there is none before
+uniform float frames;                        // in the frame itself: 1, or the mean of more
+uniform float share;                         // of the frames before that still count
 uniform float most, mostInMotion;
+uniform int isPathTraced;
 layout(location = 0) out vec4 mean;
 layout(location = 1) out float nearestDistance;  // of 3x3 pixels
 
 const float kDeviations = 1.25;
 const float kSharpness = 0.75;  // 0.5 is Catmull-Rom: blurs more where a mean is read again in every frame
+const float kSharpnessOfNoise = 0.5;  // more amplifies what differs from pixel to pixel
 const float kInfinite = 1e30;
 const float kFarther = 1.02;  // beyond this ratio of distances it is another surface
 
 // Cubic convolution of 4x4 texels [Keys1981], by nine bilinear taps, of which the corners, with hardly any weight, are
 // left out [Jimenez2016].
 vec3 before(vec2 uv) { return textureLod(beforeTexture, uv, 0.0).rgb; }
-vec3 cubic(vec2 uv) {
+vec3 cubic(vec2 uv, float sharpness) {
   vec2 size = vec2(textureSize(beforeTexture, 0)), place = uv * size, middle = floor(place - 0.5) + 0.5,
        f = place - middle, g = 1.0 - f;
-  vec2 w0 = -kSharpness * f * g * g, w3 = -kSharpness * f * f * g, w12 = 1.0 - w0 - w3,
-       w2 = 1.0 + g * g * ((2.0 - kSharpness) * g - (3.0 - kSharpness));
+  vec2 w0 = -sharpness * f * g * g, w3 = -sharpness * f * f * g, w12 = 1.0 - w0 - w3,
+       w2 = 1.0 + g * g * ((2.0 - sharpness) * g - (3.0 - sharpness));
   vec2 at0 = (middle - 1.0) / size, at12 = (middle + w2 / w12) / size, at3 = (middle + 2.0) / size;
   vec3 sum = w12.x * w12.y * before(at12) + w12.x * w0.y * before(vec2(at12.x, at0.y)) +
              w0.x * w12.y * before(vec2(at0.x, at12.y)) + w3.x * w12.y * before(vec2(at3.x, at12.y)) +
@@ -64,12 +69,12 @@ void main() {
   bool isFar = inverseLeast == 0.0;
   if (isFar) nearest.xy = 2.0 * gl_FragCoord.xy / size - 1.0;
   nearestDistance = isFar ? kInfinite : 1.0 / inverseLeast;
-  mean = vec4(radiance, 1.0);
+  mean = vec4(radiance, frames);
   if (starts != 0) return;
   if (moves == 0) {
     vec4 old = texelFetch(beforeTexture, pixel, 0);
-    float count = min(old.a + 1.0, most);
-    mean = vec4(mix(old.rgb, radiance, 1.0 / count), count);
+    float count = min(share * old.a + frames, most);
+    mean = vec4(mix(old.rgb, radiance, frames / count), count);
     return;
   }
 
@@ -81,10 +86,12 @@ void main() {
   float distance = isFar ? kInfinite : place.w / inverseLeast,
         spread = isFar || inverseMost == 0.0 ? 0.0 : 1.0 / inverseMost - nearestDistance;
   if (distance > kFarther * texelFetch(distanceBeforeTexture, pixelBefore, 0).r + spread) return;
-  vec3 middle = sum / 9.0, range = kDeviations * sqrt(max(squares / 9.0 - middle * middle, vec3(0.0)));
-  vec3 old = cubic(uv), away = old - middle;
-  vec3 ratios = abs(away) / max(range, vec3(1e-30));
-  old = middle + away / max(1.0, max(ratios.r, max(ratios.g, ratios.b)));
-  float count = min(texelFetch(beforeTexture, pixelBefore, 0).a + 1.0, mostInMotion);
-  mean = vec4(mix(old, radiance, 1.0 / count), count);
+  vec3 old = cubic(uv, isPathTraced != 0 ? kSharpnessOfNoise : kSharpness);
+  if (isPathTraced == 0) {
+    vec3 middle = sum / 9.0, range = kDeviations * sqrt(max(squares / 9.0 - middle * middle, vec3(0.0)));
+    vec3 away = old - middle, ratios = abs(away) / max(range, vec3(1e-30));
+    old = middle + away / max(1.0, max(ratios.r, max(ratios.g, ratios.b)));
+  }
+  float count = min(texelFetch(beforeTexture, pixelBefore, 0).a + frames, mostInMotion);
+  mean = vec4(mix(old, radiance, frames / count), count);
 }
