@@ -51,7 +51,10 @@ bool outsideFrustum(const glm::mat4& clipFromWorld, const glm::vec3& centre, con
 
 GpuScene::GpuScene(const Scene& scene, const SceneFeatures& features, const gl::Capabilities& capabilities,
                    const GpuSceneSettings& settings)
-    : scene_(&scene), features_(features), isSoftware_(capabilities.softwareRenderer) {
+    : scene_(&scene),
+      features_(features),
+      boundaries_(settings.boundaries),
+      isSoftware_(capabilities.softwareRenderer) {
   gl::Sampling sampling{settings.mipmaps ? gl::Filter::linearMipmaps : gl::Filter::linear, gl::Filter::linear};
   // Each of n samples covers 1 / sqrt(n) of a pixel's width, so that samples alone filter pixels whose sides on the
   // texture differ by as much.
@@ -131,11 +134,15 @@ GpuScene::GpuScene(const Scene& scene, const SceneFeatures& features, const gl::
     const std::array<std::uint8_t, 4> texel{255, 255, 255, 255};
     white_->upload(gl::Texels::rgbaByte, texel.data());
   }
+  uploadMeshes();
+}
 
-  // Opaque meshes first, so that a depth pass draws them in one call; then grouped by material.
+// Opaque meshes first, so that a depth pass draws them in one call; then grouped by material.
+void GpuScene::uploadMeshes() {
+  const Scene& scene = *scene_;
   std::vector<const Mesh*> order;
   for (const Mesh& mesh : scene.meshes)
-    if (settings.boundaries || scene.materials[static_cast<std::size_t>(mesh.material)].bsdf != Bsdf::none)
+    if (boundaries_ || scene.materials[static_cast<std::size_t>(mesh.material)].bsdf != Bsdf::none)
       order.push_back(&mesh);
   const auto isMasked = [&](const Mesh* mesh) { return surfaces_[static_cast<std::size_t>(mesh->material)].masked; };
   std::stable_sort(order.begin(), order.end(), [&](const Mesh* a, const Mesh* b) {
@@ -152,7 +159,7 @@ GpuScene::GpuScene(const Scene& scene, const SceneFeatures& features, const gl::
     (isMasked(mesh) ? all_.masked_ : all_.opaque_).push_back(draw);
     if (!isMasked(mesh)) opaqueIndexCount_ = static_cast<std::uint32_t>(indices.size());
   }
-  CHECK(all_.masked_.empty() || features.alphaMasks, "{} masked meshes", all_.masked_.size());
+  CHECK(all_.masked_.empty() || features_.alphaMasks, "{} masked meshes", all_.masked_.size());
 
   vertices_ = gl::Buffer("scene vertices", scene.vertices.size() * sizeof(Vertex), scene.vertices.data(),
                          gl::Usage::staticDraw);
@@ -171,6 +178,13 @@ void GpuScene::setValues(Surface& surface, const Material& material) const {
   surface.diffuse = material.metalMap->base;
   surface.metallic = material.metalMap->metallic;
   surface.roughness = material.metalMap->roughness;
+}
+
+void GpuScene::replaceMeshes() {
+  for (std::size_t i = 0; i < surfaces_.size(); ++i) setValues(surfaces_[i], scene_->materials[i]);
+  all_ = {};
+  opaqueIndexCount_ = 0;
+  uploadMeshes();
 }
 
 void GpuScene::update(const std::vector<std::size_t>& meshes) {

@@ -72,6 +72,8 @@ class GpuScene {
 
   /// The scene's vertices and faces of these meshes, and what its materials' textures do not say, are others.
   void update(const std::vector<std::size_t>& meshes);
+  /// All its meshes are others, of the same materials.
+  void replaceMeshes();
 
   const Scene& scene() const { return *scene_; }
   const SceneFeatures& features() const { return features_; }
@@ -90,6 +92,7 @@ class GpuScene {
   using Draw = Selection::Draw;
   /// Makes buffer and vertex array of `to`, whose draws are known.
   void uploadIndices(const std::string& name, const std::vector<std::uint32_t>& indices, Selection& to) const;
+  void uploadMeshes();
   void setValues(Surface& surface, const Material& material) const;
   void drawRange(const Draw& draw) const;
   void bindSurface(const gl::Program& program, const Surface& surface, bool isotropic) const;
@@ -103,6 +106,7 @@ class GpuScene {
   std::map<TextureWraps, gl::Sampler> isotropic_;  ///< of colours, if textures are filtered anisotropically
   std::vector<Surface> surfaces_;
   std::uint32_t opaqueIndexCount_ = 0;  ///< opaque meshes come first in the index buffer
+  bool boundaries_;  ///< GpuSceneSettings::boundaries
   bool isSoftware_;  ///< the renderer
 };
 
