@@ -48,7 +48,7 @@ struct SideState {
   PictureOptions built;
   std::string builtAs, failedAs;  ///< textOf() of options, with the scene's version
   LightState lights;  ///< of the renderer
-  bool isBehind = false;  ///< the renderer missed a change of the scene that it could not follow
+  SceneChange missed;  ///< changes of the scene that the renderer could not follow, or that take their time
   std::string failure;  ///< why the options could not be applied; empty: they could
   double buildSeconds = 0.0;
   std::optional<gl::Texture> picture;

@@ -336,10 +336,12 @@ void WalkWindow::follow(const SceneChange& change) {
   ++state_.sceneVersion;
   for (SideState& side : state_.sides) {
     side.judgement.clear();
-    // One of other options follows too: it is shown until the one for these is made.
-    side.isBehind =
-        side.isBehind || !side.renderer || !side.renderer->follow(context_, programs_, *state_.scene, change);
-    if (!side.isBehind) {
+    // One of other options follows too: it is shown until the one for these is made. A solution takes its time (make).
+    const bool isSolved = side.renderer && radiosityOf(side.renderer->technique());
+    if (isSolved || side.missed.any() || !side.renderer ||
+        !side.renderer->follow(context_, programs_, *state_.scene, change)) {
+      side.missed.add(change);
+    } else {
       side.builtAs = wantedOf(side.built);
       side.lights = lightsOf(state_);
     }
@@ -415,7 +417,7 @@ void WalkWindow::loadWantedScene() {
     a.built = shown;
     a.builtAs = wantedOf(a.built);
     a.lights = lightsOf(state_);
-    a.isBehind = false;
+    a.missed = {};
     state_.sceneText = file.string();
     if (host_.kind() == HostKind::window && !player_) rememberFile(file);
     state_.path.spline = std::move(path);
@@ -464,7 +466,8 @@ void WalkWindow::make(SideState& side) {
     RenderSettings settings = side.options.parse();
     settings.size = pictureSize();
     const auto start = Clock::now();
-    breathe("making technique " + side.options.technique);
+    const bool isSame = side.renderer && side.missed.any() && textOf(side.options) == textOf(side.built);
+    if (!isSame) breathe("making technique " + side.options.technique);
     const gl::BuildWatch watch([this](const std::string& name) { breathe("compiling " + name); });
     if (solves(settings.technique)) {
       state_.solving.begin();
@@ -474,23 +477,27 @@ void WalkWindow::make(SideState& side) {
           side.renderer = preview(*state_.scene, side.built);
           side.builtAs = wantedOf(side.built);
           side.lights = lightsOf(state_);
-          side.isBehind = false;
+          side.missed = {};
         }
         made_ = &side;
         madeAs_ = wanted;
       }
     }
-    auto renderer = std::make_unique<Renderer>(context_, programs_, *state_.scene, settings);
+    std::unique_ptr<Renderer> renderer;
+    if (!isSame || !side.renderer->follow(context_, programs_, *state_.scene, side.missed))
+      renderer = std::make_unique<Renderer>(context_, programs_, *state_.scene, settings);
     endSolving();
-    lastBreath_ = {};  // a driver may compile its programs only now
-    breathe("drawing the first picture by " + side.options.technique);
-    side.renderer = std::move(renderer);
+    if (renderer) {
+      lastBreath_ = {};  // a driver may compile its programs only now
+      breathe("drawing the first picture by " + side.options.technique);
+      side.renderer = std::move(renderer);
+      // The first is told last, and stays.
+      const std::vector<std::string>& warnings = side.renderer->warnings();
+      for (auto warning = warnings.rbegin(); warning != warnings.rend(); ++warning) state_.say(*warning);
+    }
     side.lights = lightsOf(state_);
     state_.hemicube.reset();
-    side.isBehind = false;
-    // The first is told last, and stays.
-    const std::vector<std::string>& warnings = side.renderer->warnings();
-    for (auto warning = warnings.rbegin(); warning != warnings.rend(); ++warning) state_.say(*warning);
+    side.missed = {};
     side.buildSeconds = secondsSince(start);
     side.failure.clear();
     side.failedAs.clear();
@@ -529,7 +536,7 @@ void WalkWindow::takeBack(SideState& side) {
   setLights(state_, side.lights);
   shownLights_ = side.lights;
   follow(change);
-  side.isBehind = false;
+  side.missed = {};
   side.builtAs = wantedOf(side.built);
 }
 

@@ -52,7 +52,10 @@ bool outsideFrustum(const glm::mat4& clipFromWorld, const glm::vec3& centre, con
 
 GpuScene::GpuScene(const Scene& scene, const SceneFeatures& features, const gl::Capabilities& capabilities,
                    const GpuSceneSettings& settings)
-    : scene_(&scene), features_(features), isSoftware_(capabilities.softwareRenderer) {
+    : scene_(&scene),
+      features_(features),
+      boundaries_(settings.boundaries),
+      isSoftware_(capabilities.softwareRenderer) {
   gl::Sampling sampling{settings.mipmaps ? gl::Filter::linearMipmaps : gl::Filter::linear, gl::Filter::linear};
   // Each of n samples covers 1 / sqrt(n) of a pixel's width, so that samples alone filter pixels whose sides on the
   // texture differ by as much.
@@ -132,11 +135,15 @@ GpuScene::GpuScene(const Scene& scene, const SceneFeatures& features, const gl::
     const std::array<std::uint8_t, 4> texel{255, 255, 255, 255};
     white_->upload(gl::Texels::rgbaByte, texel.data());
   }
+  uploadMeshes();
+}
 
-  // Opaque meshes first, so that a depth pass draws them in one call; then grouped by material.
+// Opaque meshes first, so that a depth pass draws them in one call; then grouped by material.
+void GpuScene::uploadMeshes() {
+  const Scene& scene = *scene_;
   std::vector<const Mesh*> order;
   for (const Mesh& mesh : scene.meshes)
-    if (settings.boundaries || scene.materials[static_cast<std::size_t>(mesh.material)].bsdf != Bsdf::none)
+    if (boundaries_ || scene.materials[static_cast<std::size_t>(mesh.material)].bsdf != Bsdf::none)
       order.push_back(&mesh);
   const auto isMasked = [&](const Mesh* mesh) { return surfaces_[static_cast<std::size_t>(mesh->material)].masked; };
   std::stable_sort(order.begin(), order.end(), [&](const Mesh* a, const Mesh* b) {
@@ -152,7 +159,7 @@ GpuScene::GpuScene(const Scene& scene, const SceneFeatures& features, const gl::
     indices.insert(indices.end(), first, first + mesh->indexCount);
     (isMasked(mesh) ? all_.masked_ : all_.opaque_).push_back(draw);
   }
-  CHECK(all_.masked_.empty() || features.alphaMasks, "{} masked meshes", all_.masked_.size());
+  CHECK(all_.masked_.empty() || features_.alphaMasks, "{} masked meshes", all_.masked_.size());
 
   vertices_ = gl::Buffer("scene vertices", scene.vertices.size() * sizeof(Vertex), scene.vertices.data(),
                          gl::Usage::staticDraw);
@@ -173,6 +180,13 @@ void GpuScene::setValues(Surface& surface, const Material& material) const {
   surface.roughness = material.metalMap->roughness;
 }
 
+void GpuScene::replaceMeshes() {
+  for (std::size_t i = 0; i < surfaces_.size(); ++i) setValues(surfaces_[i], scene_->materials[i]);
+  all_ = {};
+  ++poses_;
+  uploadMeshes();
+}
+
 void GpuScene::update(const std::vector<std::size_t>& meshes) {
   for (std::size_t i = 0; i < surfaces_.size(); ++i) setValues(surfaces_[i], scene_->materials[i]);
   if (!meshes.empty()) ++poses_;
@@ -182,7 +196,7 @@ void GpuScene::update(const std::vector<std::size_t>& meshes) {
     vertices_.upload(range.first * sizeof(Vertex), range.count * sizeof(Vertex), &scene_->vertices[range.first]);
     for (std::vector<Draw>* draws : {&all_.opaque_, &all_.masked_})
       for (Draw& draw : *draws) {
-        if (draw.firstInScene != mesh.firstIndex) continue;
+        if (draw.firstInScene != mesh.firstIndex || mesh.indexCount == 0) continue;
         if (!std::exchange(draw.moves, true)) ++movingMeshes_;
         draw.centre = glm::vec3(mesh.bounds.centre());
         draw.halfExtent = glm::vec3(0.5 * mesh.bounds.extent());

@@ -76,6 +76,8 @@ class GpuScene {
   void update(const std::vector<std::size_t>& meshes);
   std::size_t poses() const { return poses_; }  ///< so far: calls of update() with any meshes, and the first pose
   std::size_t movingMeshes() const { return movingMeshes_; }  ///< meshes that it has ever named
+  /// All its meshes are others, of the same materials.
+  void replaceMeshes();
 
   const Scene& scene() const { return *scene_; }
   const SceneFeatures& features() const { return features_; }
@@ -94,6 +96,7 @@ class GpuScene {
   using Draw = Selection::Draw;
   /// Makes buffer and vertex array of `to`, whose draws are known.
   void uploadIndices(const std::string& name, const std::vector<std::uint32_t>& indices, Selection& to) const;
+  void uploadMeshes();
   void setValues(Surface& surface, const Material& material) const;
   void drawRange(const Draw& draw) const;
   void bindSurface(const gl::Program& program, const Surface& surface, bool isotropic) const;
@@ -107,6 +110,7 @@ class GpuScene {
   std::map<TextureWraps, gl::Sampler> isotropic_;  ///< of colours, if textures are filtered anisotropically
   std::vector<Surface> surfaces_;
   std::size_t poses_ = 1, movingMeshes_ = 0;
+  bool boundaries_;  ///< GpuSceneSettings::boundaries
   bool isSoftware_;  ///< the renderer
 };
 

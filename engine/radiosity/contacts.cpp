@@ -258,6 +258,8 @@ class Cutter {
     const auto middle = static_cast<std::uint32_t>(mesh_.points.size());
     mesh_.points.push_back(glm::mix(mesh_.points[from], mesh_.points[to], place.at));
     const std::set<std::uint32_t> patches = std::move(onEdge_.extract(edgeOf(from, to)).mapped());
+    if (const auto stood = mesh_.standing.extract(edgeOf(from, to)); !stood.empty())
+      for (const std::uint32_t end : {from, to}) mesh_.standing[edgeOf(end, middle)] = stood.mapped();
     for (const std::uint32_t p : patches) {
       const auto added = static_cast<std::uint32_t>(mesh_.patches.size());
       std::size_t k = 0;
@@ -283,7 +285,8 @@ class Cutter {
 };
 
 /// The contacts of each patch, each a whole triangle.
-std::vector<std::vector<Contact>> contactsOf(const RadiosityMesh& mesh, double touch) {
+std::vector<std::vector<Contact>> contactsOf(const RadiosityMesh& mesh, double touch,
+                                             const std::function<bool(const Patch&, const Patch&)>& between) {
   std::vector<Corners> triangles;
   std::map<MeshEdge, int> patchesOn;
   for (const Patch& patch : mesh.patches) {
@@ -300,11 +303,18 @@ std::vector<std::vector<Contact>> contactsOf(const RadiosityMesh& mesh, double t
   const BoxTree tree(triangles);
   std::vector<std::vector<Contact>> contacts(triangles.size());
   onAllCores(triangles.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t a = begin; a < end; ++a)
-      tree.eachNear(static_cast<std::uint32_t>(a), touch, [&](std::uint32_t b) {
-        if (areNeighbours(mesh.patches[a], mesh.patches[b])) return;
+    for (std::size_t a = begin; a < end; ++a) {
+      std::vector<std::uint32_t> near;
+      tree.eachNear(static_cast<std::uint32_t>(a), touch, [&](std::uint32_t b) { near.push_back(b); });
+      if (between) {
+        std::erase_if(near, [&](std::uint32_t b) { return !between(mesh.patches[a], mesh.patches[b]); });
+        std::ranges::sort(near);
+      }
+      for (const std::uint32_t b : near) {
+        if (areNeighbours(mesh.patches[a], mesh.patches[b])) continue;
         if (auto contact = contactOf(triangles[a], triangles[b], touch)) contacts[a].push_back(std::move(*contact));
-      });
+      }
+    }
   });
   return contacts;
 }
@@ -318,9 +328,10 @@ bool isBetween(std::span<const glm::dvec3> standing, const Patch& a, const Patch
   });
 }
 
-std::vector<std::uint32_t> cutAtContacts(RadiosityMesh& mesh, double longestEdge) {
+std::vector<std::uint32_t> cutAtContacts(RadiosityMesh& mesh, double longestEdge,
+                                         const std::function<bool(const Patch&, const Patch&)>& between) {
   const double touch = kTouch * mesh.extent, least = kLeastTriangle * longestEdge;
-  const std::vector<std::vector<Contact>> contacts = contactsOf(mesh, touch);
+  const std::vector<std::vector<Contact>> contacts = contactsOf(mesh, touch, between);
   std::vector<bool> isLarge;
   for (const Patch& patch : mesh.patches) isLarge.push_back(longestEdgeOf(mesh.corners(patch)) > least);
   Cutter cutter(mesh, touch);

@@ -1,9 +1,11 @@
 #include "radiosity/hemicube_batch.hpp"
 
 #include "base/error.hpp"
+#include "base/hash.hpp"
 #include "radiosity/hemicube_map.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -24,6 +26,12 @@ double hashed(std::uint32_t seed, std::uint32_t patch) {
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
   z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
   return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1.0p-53;
+}
+
+std::uint32_t placeOf(const std::array<glm::dvec3, 3>& corners) {
+  Hash hash;
+  for (const glm::dvec3& corner : corners) hash.add(corner);
+  return static_cast<std::uint32_t>(hash.value() ^ hash.value() >> 32);
 }
 
 /// Of one hemicube.
@@ -136,7 +144,8 @@ glm::dmat3 HemicubeBatch::axesOf(int index, int roll) const {
   // Towards the first corner: never parallel to the normal, whatever the patch.
   const glm::dvec3 u0 = glm::normalize(corners[0] - patch.centroid), v0 = glm::cross(patch.faceNormal, u0);
   // A hemicube is the same after a quarter of a rotation: several are spaced evenly within it.
-  const double rotation = hashed(settings_.seed, static_cast<std::uint32_t>(index)) + 0.25 * roll / rollsOf(settings_);
+  const std::uint32_t key = settings_.rollsByPlace ? placeOf(corners) : static_cast<std::uint32_t>(index);
+  const double rotation = hashed(settings_.seed, key) + 0.25 * roll / rollsOf(settings_);
   const double angle = settings_.randomRoll ? 2.0 * std::numbers::pi * rotation : 0.0;
   const glm::dvec3 u = std::cos(angle) * u0 + std::sin(angle) * v0;
   return {u, glm::cross(patch.faceNormal, u), patch.faceNormal};

@@ -32,6 +32,8 @@ struct HemicubeSettings {
   DeltaMap map = DeltaMap::exact;
   bool randomRoll = true;  ///< each turned about its normal by a hash of seed and patch; else towards the first corner
   std::uint32_t seed = 1;
+  /// The hash is of the patch's corners instead of its number, which motion of other patches changes.
+  bool rollsByPlace = false;
   /// Hemicubes per patch, each turned differently, whose mean counts: antialiasing. 1 without randomRoll.
   int rolls = 1;
   int exactPixels = 12;  ///< patches that cover this many pixels get their closed form; 0: never

@@ -6,6 +6,7 @@
 #include "base/log.hpp"
 #include "radiosity/direct_light.hpp"
 #include "radiosity/form_factor_matrix.hpp"
+#include "radiosity/hemicube_batch.hpp"
 #include "radiosity/hemicubes.hpp"
 #include "radiosity/backs.hpp"
 #include "radiosity/row_file.hpp"
@@ -29,8 +30,9 @@ namespace {
 using Vectors = std::vector<glm::dvec3>;
 using Product = decltype(RadiositySystem::product);
 
-// For a form factor, its transposed copy and their mean, during the repair.
-constexpr double kBytesPerEntry = 32.0;
+// For a form factor, its transposed copy and their mean, during the repair; where the scene moves, for rows of this
+// moment and both of the one before.
+constexpr double kBytesPerEntry = 32.0, kBytesPerEntryInMotion = 56.0;
 
 std::size_t freeMemory() {
   return static_cast<std::size_t>(std::max(sysconf(_SC_AVPHYS_PAGES), 1L)) *
@@ -62,8 +64,7 @@ struct FormFactors {
     fronts.insert(fronts.end(), rows.fronts.begin(), rows.fronts.end());
     backs.insert(backs.end(), rows.backs.begin(), rows.backs.end());
   }
-  /// Bytes that the repair will take with `patches` rows, if the rest is like the rows so far.
-  double expectedBytes(std::size_t patches) const { return matrix ? expectedEntries(patches) * kBytesPerEntry : 0.0; }
+  /// With `patches` rows, if the rest is like the rows so far.
   double expectedEntries(std::size_t patches) const {
     return static_cast<double>(entries) / static_cast<double>(rowCount()) * static_cast<double>(patches);
   }
@@ -115,35 +116,73 @@ class MeshSolver {
     solution.fromSky = analyse(input_.scene).environment ? skyLight(input_.programs, rays, input_.scene, mesh)
                                                          : Vectors(count_, glm::dvec3(0.0));
     HemicubeSettings hemicubeSettings = input_.settings.hemicubes;
-    hemicubeSettings.visibility = visibilityOf(mesh, visibility);
-    Hemicubes hemicubes(input_.programs, capabilities, mesh, hemicubeSettings, &rays);
-    solution.visibility = hemicubeSettings.visibility = hemicubes.visibility();
+    solution.visibility = hemicubeSettings.visibility = visibilityOf(mesh, visibility);
+    const std::vector<std::uint32_t> sources = smallSourcesOf(mesh);
+    std::optional<MomentBefore> before;
+    if (input_.before)
+      before.emplace(*input_.before, input_.scene, mesh,
+                     hemicubeSettings.exactPixels > 0 ? std::span(sources) : std::span<const std::uint32_t>());
 
-    constexpr double kLong = 5.0;  // seconds
-    if (const double seconds = secondsSince(begin); seconds > kLong)
-      logInfo("radiosity: hierarchy and direct light of {} patches took {:.0f} s; its {} hemicubes follow{}", count_,
-              seconds, count_, input_.checkpoint.empty() ? "" : ", which are kept when it is stopped");
-
+    // Form factors, unless nothing but light has changed.
     FormFactors factors;
-    std::unique_ptr<RowFile> file = openCheckpoint(rowsFingerprint(mesh, hemicubeSettings), factors);
-    computeRows(hemicubes, file, factors);
+    std::optional<Hemicubes> hemicubes;
+    std::unique_ptr<RowFile> file;
+    if (before && before->isWhole()) {
+      factors.fronts = input_.before->fronts;
+      factors.backs = input_.before->backs;
+    } else {
+      hemicubes.emplace(input_.programs, capabilities, mesh, hemicubeSettings, &rays);
+      solution.visibility = hemicubeSettings.visibility = hemicubes->visibility();
+      constexpr double kLong = 5.0;  // seconds
+      if (const double seconds = secondsSince(begin); seconds > kLong)
+        logInfo("radiosity: hierarchy and direct light of {} patches took {:.0f} s; its {} hemicubes follow{}", count_,
+                seconds, count_, input_.checkpoint.empty() ? "" : ", which are kept when it is stopped");
+      file = openCheckpoint(rowsFingerprint(mesh, hemicubeSettings), factors);
+      computeRows(*hemicubes, before, file, factors);
+    }
 
+    // The system and its solution.
     const Clock::time_point start = Clock::now();
     RadiositySystem system = systemOf(mesh, solution.direct, solution.fromSky);
-    const std::vector<double> required = requiredSums(factors);
-    solution.keptRows = factors.matrix.has_value();
-    if (factors.matrix) {
+    auto moment = input_.scene.motion ? std::make_shared<RadiosityMoment>() : nullptr;
+    const std::vector<double> required = hemicubes ? requiredSums(factors) : std::vector<double>();
+    std::shared_ptr<const FormFactorMatrix> matrix;
+    if (!hemicubes) {
+      matrix = input_.before->repaired;
+      moment->rows = input_.before->rows;
+    } else if (factors.matrix) {
       solution.repaired = meanDifference(factors.sums, required);
-      useMatrix(system, *factors.matrix, required, hemicubes.smallSources());
-      solution.entries = factors.matrix->entryCount();
+      // With refinements meshes follow the light, and so would their rows.
+      if (moment && input_.settings.refinements == 0)
+        moment->rows = std::make_shared<const FormFactorMatrix>(*factors.matrix);
+      repair(system, *factors.matrix, required, sources);
+      matrix = std::make_shared<const FormFactorMatrix>(*std::exchange(factors.matrix, std::nullopt));
+    }
+    solution.keptRows = matrix != nullptr;
+    if (matrix) {
+      useMatrix(system, *matrix);
+      solution.entries = matrix->entryCount();
     } else {
       system.rowSums = input_.settings.repair ? required : factors.sums;
-      system.product = productOfRows(factors, required, hemicubes, file.get());
+      system.product = productOfRows(factors, required, *hemicubes, file.get());
     }
     solution.fromEmitters = lightOfEmitters(mesh, system.product);
     system.product = reusing(mesh, solution.fromEmitters, std::move(system.product));
-    RadiositySolved solved = solveSystem(system, factors);
+    RadiositySolved solved = solveSystem(system, factors, before ? before->start(system) : Vectors());
+    if (before)
+      logVerbose("radiosity: {} of {} rows made again, {:.1f} products", factors.hemicubes, count_,
+                 solved.progress.products);
 
+    if (moment) {
+      moment->mesh = mesh;
+      if (moment->rows) moment->repaired = matrix;
+      moment->fronts = factors.fronts;
+      moment->backs = factors.backs;
+      moment->sources = sources;
+      moment->irradiance = solved.irradiance;
+      moment->emitted = emittedBy(system);
+      solution.moment = std::move(moment);
+    }
     solution.exitance = std::move(solved.exitance);
     solution.irradiance = std::move(solved.irradiance);
     for (std::size_t i = 0; i < count_; ++i) solution.irradiance[i] += solution.direct[i] + solution.fromSky[i];
@@ -195,7 +234,8 @@ class MeshSolver {
   }
 
   /// Computes the missing rows, and appends them to the checkpoint, unless it becomes too large.
-  void computeRows(Hemicubes& hemicubes, std::unique_ptr<RowFile>& file, FormFactors& factors) const {
+  void computeRows(Hemicubes& hemicubes, const std::optional<MomentBefore>& before, std::unique_ptr<RowFile>& file,
+                   FormFactors& factors) const {
     const Clock::time_point start = Clock::now();
     const std::size_t known = factors.rowCount();
     const double mostBytes = SolutionWatch::mostBytes(input_.checkpoint);
@@ -205,12 +245,20 @@ class MeshSolver {
       if (file && factors.rowCount() >= count_ / 100) dropIfTooLarge(file, factors, mostBytes);
       if (file) file->append(rows);
     };
-    hemicubes.stream(static_cast<int>(known), static_cast<int>(count_), take, [&](int done) {
-      stopped = !report(RadiosityStage::Kind::formFactors, static_cast<std::size_t>(done));
-      return !stopped;
-    });
+    const auto holds = [&](std::size_t row) { return before && before->rowHolds()[row]; };
+    for (std::size_t row = known, end = known; row < count_ && !stopped; row = end) {
+      while (end < count_ && holds(end) == holds(row)) ++end;
+      if (holds(row)) {
+        add(before->rows(row, end), factors);
+        continue;
+      }
+      hemicubes.stream(static_cast<int>(row), static_cast<int>(end), take, [&](int done) {
+        stopped = !report(RadiosityStage::Kind::formFactors, static_cast<std::size_t>(done));
+        return !stopped;
+      });
+      factors.hemicubes += end - row;
+    }
     if (stopped) stop(factors);
-    factors.hemicubes = factors.rowCount() - known;
     factors.seconds = secondsSince(start);
   }
 
@@ -230,8 +278,9 @@ class MeshSolver {
   /// Adds rows; drops the matrix once it is clear that it will not fit in memory.
   void add(const FormFactorRows& rows, FormFactors& factors) const {
     factors.append(rows);
-    const double bytes = factors.expectedBytes(count_);
-    if (bytes <= static_cast<double>(memory_)) return;
+    const double each = input_.scene.motion ? kBytesPerEntryInMotion : kBytesPerEntry,
+                 bytes = factors.expectedEntries(count_) * each;
+    if (!factors.matrix || bytes <= static_cast<double>(memory_)) return;
     logWarning(
         "radiosity: the form factors of {} patches need about {} MiB, {} are available: they are {} for each product",
         count_, static_cast<std::size_t>(bytes) >> 20, memory_ >> 20,
@@ -241,15 +290,17 @@ class MeshSolver {
 
   // ---------------------------------------------------------------------------------------------- system
 
-  /// The system with the matrix in memory, made reciprocal and with corrected row sums.
-  void useMatrix(RadiositySystem& system, FormFactorMatrix& matrix, const std::vector<double>& required,
-                 const std::vector<std::uint32_t>& smallSources) const {
-    if (input_.settings.repair) {
-      const double resolution = input_.settings.hemicubes.resolution,
-                   pixel = 4.0 / (std::numbers::pi * resolution * resolution);  // the largest delta form factor
-      matrix.repair(system.areas, required, smallSources, input_.settings.hemicubes.exactPixels * pixel);
-      system.reciprocal = true;
-    }
+  /// Makes a matrix reciprocal and corrects its row sums, if the settings say so.
+  void repair(const RadiositySystem& system, FormFactorMatrix& matrix, const std::vector<double>& required,
+              const std::vector<std::uint32_t>& smallSources) const {
+    if (!input_.settings.repair) return;
+    const double resolution = input_.settings.hemicubes.resolution,
+                 pixel = 4.0 / (std::numbers::pi * resolution * resolution);  // the largest delta form factor
+    matrix.repair(system.areas, required, smallSources, input_.settings.hemicubes.exactPixels * pixel);
+  }
+
+  void useMatrix(RadiositySystem& system, const FormFactorMatrix& matrix) const {
+    system.reciprocal = input_.settings.repair;
     system.matrix = &matrix;
     system.rowSums = matrix.rowSums();
     system.product = [&matrix](auto x, auto y) { matrix.multiply(x, y); };
@@ -311,9 +362,10 @@ class MeshSolver {
     };
   }
 
-  RadiositySolved solveSystem(const RadiositySystem& system, const FormFactors& factors) const {
+  RadiositySolved solveSystem(const RadiositySystem& system, const FormFactors& factors, const Vectors& start) const {
     bool stopped = false;
     SolverSettings solver;
+    solver.start = start;
     solver.solver = input_.settings.solver;
     solver.error = input_.settings.error;
     solver.mostProducts = input_.settings.mostProducts;

@@ -20,9 +20,11 @@ struct MeshSolverInput {
   const std::function<bool(const RadiosityStage&)>& onStage;
   int refinement = 0;
   std::filesystem::path checkpoint = {};  ///< of this mesh; empty: none
+  const RadiosityMoment* before = nullptr;  ///< of the same scene at another time
 };
 
-/// Solves one mesh as solveScene() says. `visibility`: of the hemicubes, if no checkpoint was begun with another.
+/// Solves one mesh as solveScene() says. `visibility`: of the hemicubes, if no checkpoint was begun with another; not
+/// automatic where there is a moment before.
 /// `deviations` and `settings` of the result are left to the caller.
 RadiositySolution solveMesh(const MeshSolverInput& input, RadiosityMesh mesh, HemicubeVisibility visibility);
 

@@ -2,10 +2,12 @@
 
 #include "base/error.hpp"
 #include "radiosity/contacts.hpp"
+#include "scene/motion.hpp"
 #include "scene/texture_mean.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <numbers>
 #include <numeric>
@@ -268,6 +270,35 @@ RadiosityMesh refined(const Scene& scene, const RadiosityMesh& mesh, const Patch
   return result;
 }
 
+namespace {
+
+/// Halves edges until none is too long.
+void cutLongEdges(const Scene& scene, RadiosityMesh& mesh, const PatchSettings& settings) {
+  numberLightVertices(mesh, settings);
+  if (!(settings.longestEdge > 0.0)) return;
+  const double most = settings.longestEdge * settings.longestEdge * (1.0 + 1e-9);
+  for (bool longer = true; longer;) {
+    longer = false;
+    const auto tooLong = [&](std::size_t i, int k) {
+      const auto c = mesh.corners(mesh.patches[i]);
+      const glm::dvec3 d = c[static_cast<std::size_t>((k + 1) % 3)] - c[static_cast<std::size_t>(k)];
+      return glm::dot(d, d) > most;
+    };
+    for (std::size_t i = 0; i < mesh.patches.size() && !longer; ++i)
+      for (int k = 0; k < 3; ++k) longer = longer || tooLong(i, k);
+    if (longer) mesh = refined(scene, mesh, settings, tooLong);
+  }
+}
+
+std::vector<bool> trianglesThatMove(const Scene& scene) {
+  std::vector<bool> moves(scene.triangleCount(), false);
+  for (const std::size_t m : scene.motion->meshes)
+    for (std::uint32_t t = 0; t < scene.meshes[m].indexCount / 3; ++t) moves[scene.meshes[m].firstIndex / 3 + t] = true;
+  return moves;
+}
+
+}  // namespace
+
 RadiosityMesh makePatches(const Scene& scene, const PatchSettings& settings) {
   // Reject materials for which the equation has no solution.
   for (const Material& m : scene.materials)
@@ -341,25 +372,22 @@ RadiosityMesh makePatches(const Scene& scene, const PatchSettings& settings) {
   if (mesh.patches.empty())
     throwBadInput("{}: no triangle with an area ({} without, {} with corners that are not finite)", scene.name,
                   mesh.degenerate, mesh.notFinite);
-  if (settings.contacts)
-    for (const std::uint32_t changed : cutAtContacts(mesh, settings.longestEdge))
+  const auto cut = [&](const std::function<bool(const Patch&, const Patch&)>& between) {
+    for (const std::uint32_t changed : cutAtContacts(mesh, settings.longestEdge, between))
       complete(mesh.patches[changed], mesh, scene);
-  // Cut until no edge is too long.
-  numberLightVertices(mesh, settings);
-  if (settings.longestEdge > 0.0) {
-    const double most = settings.longestEdge * settings.longestEdge * (1.0 + 1e-9);
-    for (bool longer = true; longer;) {
-      longer = false;
-      const auto tooLong = [&](std::size_t i, int k) {
-        const auto c = mesh.corners(mesh.patches[i]);
-        const glm::dvec3 d = c[static_cast<std::size_t>((k + 1) % 3)] - c[static_cast<std::size_t>(k)];
-        return glm::dot(d, d) > most;
-      };
-      for (std::size_t i = 0; i < mesh.patches.size() && !longer; ++i)
-        for (int k = 0; k < 3; ++k) longer = longer || tooLong(i, k);
-      if (longer) mesh = refined(scene, mesh, settings, tooLong);
-    }
+  };
+  if (!settings.contacts || !scene.motion) {
+    if (settings.contacts) cut({});
+    cutLongEdges(scene, mesh, settings);
+    return mesh;
   }
+  // What moves is cut out last, of small patches: the others stay the same.
+  const std::vector<bool> moves = trianglesThatMove(scene);
+  const auto isStill = [&](const Patch& a, const Patch& b) { return !moves[a.triangle] && !moves[b.triangle]; };
+  cut(isStill);
+  cutLongEdges(scene, mesh, settings);
+  cut(std::not_fn(isStill));
+  cutLongEdges(scene, mesh, settings);
   return mesh;
 }
 

@@ -46,9 +46,23 @@ std::span<const GeometryTechnique::Sides> RadiosityFrame::sides() const {
 RadiosityFrame::RadiosityFrame(const FrameParts& parts)
     : parts_(parts),
       view_(parts.context, parts.programs, parts.scene, viewSettings(parts.scene, parts.settings), parts.origin) {
+  makeRays();
+}
+
+void RadiosityFrame::makeRays() {
+  rays_.reset();
   if (view_.takesDirectRays())
-    rays_.emplace(parts.scene, parts.context.capabilities(), parts.settings.of<RadiosityView::Settings>().shadowRays,
-                  parts.origin);
+    rays_.emplace(parts_.scene, parts_.context.capabilities(), parts_.settings.of<RadiosityView::Settings>().shadowRays,
+                  parts_.origin);
+}
+
+bool RadiosityFrame::follow(const SceneChange&) {
+  const RadiosityView::Settings settings = viewSettings(parts_.scene, parts_.settings);
+  const RadiositySolution& before = view_.solution();
+  if (!before.moment || !settings.file.empty()) return false;
+  view_ = RadiosityView(parts_.context, parts_.programs, parts_.scene, settings, parts_.origin, &before);
+  makeRays();
+  return true;
 }
 
 void RadiosityFrame::bindForShading() const {

@@ -28,6 +28,8 @@ class RadiosityFrame final : public GeometryTechnique {
     return view_.loadPrograms(parts_.programs, parts_.drawn(), inspected);
   }
   const gl::Program* toneMap() const override { return view_.loadMapping(parts_.programs); }
+  /// Solves the scene as it is now, from the last solution. The patches are others.
+  bool follow(const SceneChange& change) override;
   void bindForShading() const override;
   /// A few shadow rays per pixel keep a small GPU busy for seconds, so rows of pixels are drawn in chunks, each waited
   /// for.
@@ -41,6 +43,8 @@ class RadiosityFrame final : public GeometryTechnique {
   const RadiosityView& view() const { return view_; }
 
  private:
+  void makeRays();
+
   FrameParts parts_;
   RadiosityView view_;
   std::optional<DirectRays> rays_;

@@ -16,8 +16,16 @@ namespace {
 constexpr GLuint kLightBinding = 0, kFacesBinding = 2;  // 1: direct light
 
 RadiositySolution solveOrLoad(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
-                              const RadiosityView::Settings& settings) {
+                              const RadiosityView::Settings& settings, const RadiositySolution* before) {
   gl::requireWithin(GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS, 2, "the view of a radiosity solution");
+  const auto solve = [&](const std::filesystem::path& checkpoint) {
+    RadiositySolutionSettings asked = settings.solution;
+    const double seconds = SolutionWatch::secondsOfChunk(), usual = asked.hemicubes.secondsOfChunk;
+    asked.hemicubes.unmeasuredIterations *= seconds / usual;
+    asked.hemicubes.secondsOfChunk = seconds;
+    return solveScene(context, programs, scene, asked, checkpoint, SolutionWatch::innermostOnStage(), before);
+  };
+  if (before) return solve({});
   if (!settings.file.empty() && std::filesystem::exists(settings.file)) {
     RadiositySolution solution = loadSolution(settings.file, scene);
     if (activeRadiosityDeviations(solution.deviations) != activeRadiosityDeviations(settings.solution.deviations))
@@ -29,12 +37,7 @@ RadiositySolution solveOrLoad(const gl::Context& context, gl::ProgramLibrary& pr
   std::filesystem::path checkpoint = settings.file;
   if (!checkpoint.empty()) checkpoint += ".part";
   else checkpoint = SolutionWatch::checkpointOf(scene, settings.solution);
-  RadiositySolutionSettings asked = settings.solution;
-  const double seconds = SolutionWatch::secondsOfChunk(), usual = asked.hemicubes.secondsOfChunk;
-  asked.hemicubes.unmeasuredIterations *= seconds / usual;
-  asked.hemicubes.secondsOfChunk = seconds;
-  RadiositySolution solution =
-      solveScene(context, programs, scene, asked, checkpoint, SolutionWatch::innermostOnStage());
+  RadiositySolution solution = solve(checkpoint);
   if (!settings.file.empty()) saveSolution(settings.file, scene, solution);
   SolutionWatch::solved(checkpoint);
   return solution;
@@ -43,9 +46,9 @@ RadiositySolution solveOrLoad(const gl::Context& context, gl::ProgramLibrary& pr
 }  // namespace
 
 RadiosityView::RadiosityView(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
-                             const Settings& settings, const glm::dvec3& origin)
+                             const Settings& settings, const glm::dvec3& origin, const RadiositySolution* before)
     : settings_(settings),
-      solution_(solveOrLoad(context, programs, scene, settings)),
+      solution_(solveOrLoad(context, programs, scene, settings, before)),
       lit_(litScene(scene, solution_.mesh, origin)) {
   std::vector<glm::dvec3> patchLight = solution_.irradiance;
   for (std::size_t i = 0; i < patchLight.size(); ++i) {

@@ -40,9 +40,10 @@ class RadiosityView {
     int shadowRays = 32;  ///< per pixel, divided among the emissive triangles; used by the caller
   };
 
-  /// Solves or loads; throws as solveScene and loadSolution do. scene() is drawn about `origin`.
+  /// Solves or loads; throws as solveScene and loadSolution do. scene() is drawn about `origin`. `before`: as for
+  /// solveScene; nothing is loaded or saved then.
   RadiosityView(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const Settings& settings,
-                const glm::dvec3& origin = glm::dvec3(0.0));
+                const glm::dvec3& origin = glm::dvec3(0.0), const RadiositySolution* before = nullptr);
 
   /// The patches, for GpuScene.
   const Scene& scene() const { return lit_; }

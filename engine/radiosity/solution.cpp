@@ -58,8 +58,9 @@ RadiosityMesh refineSteep(const Scene& scene, const RadiositySolution& solution,
 }
 
 /// Implements each deviation in this solver's terms. The published map uses neither closed forms nor a repair, which
-/// would hide it.
-RadiositySolutionSettings withDeviations(RadiositySolutionSettings settings) {
+/// would hide it. Where the scene moves, so do patches' numbers.
+RadiositySolutionSettings settingsFor(const Scene& scene, RadiositySolutionSettings settings) {
+  settings.hemicubes.rollsByPlace = scene.motion != nullptr;
   const RadiosityDeviations& d = settings.deviations;
   if (d.values24Bit)
     throwBadInput(
@@ -122,7 +123,7 @@ struct FormFactorParts::Work {
 FormFactorParts::FormFactorParts(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& asked,
                                  const RadiositySolutionSettings& requestedSettings)
     : work_(std::make_unique<Work>()) {
-  RadiositySolutionSettings settings = withDeviations(requestedSettings);
+  RadiositySolutionSettings settings = settingsFor(asked, requestedSettings);
   if (const glm::dvec3 origin = floatingOrigin(asked.bounds); origin != glm::dvec3(0.0))
     work_->moved = movedTo(asked, origin);
   const Scene& scene = work_->moved ? *work_->moved : asked;
@@ -165,16 +166,18 @@ void removeCheckpoints(const std::filesystem::path& checkpoint) {
 
 RadiositySolution solveScene(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
                              const RadiositySolutionSettings& asked, const std::filesystem::path& checkpoint,
-                             const std::function<bool(const RadiosityStage&)>& onStage) {
+                             const std::function<bool(const RadiosityStage&)>& onStage,
+                             const RadiositySolution* before) {
   // Far from the origin, floats cannot represent the patches: solve near the origin, and return the scene's own
   // coordinates.
   if (const glm::dvec3 origin = floatingOrigin(scene.bounds); origin != glm::dvec3(0.0)) {
-    RadiositySolution solution = solveScene(context, programs, movedTo(scene, origin), asked, checkpoint, onStage);
+    RadiositySolution solution =
+        solveScene(context, programs, movedTo(scene, origin), asked, checkpoint, onStage, before);
     for (glm::dvec3& point : solution.mesh.points) point += origin;
     for (Patch& patch : solution.mesh.patches) patch.centroid += origin;
     return solution;
   }
-  const RadiositySolutionSettings settings = withDeviations(asked);
+  const RadiositySolutionSettings settings = settingsFor(scene, asked);
   warnOfMasks(scene);
   const PatchSettings patches = patchesOf(scene, settings);
   const double largest = largestExtent(scene);
@@ -182,11 +185,11 @@ RadiositySolution solveScene(const gl::Context& context, gl::ProgramLibrary& pro
       (patches.longestEdge > 0.0 ? patches.longestEdge : largest / kEdges) / std::pow(2.0, settings.refinements + 1);
   RadiositySolution solution;
   RadiosityMesh mesh = patchesWithBacks(context, programs, scene, patches);
-  HemicubeVisibility visibility = settings.hemicubes.visibility;
+  HemicubeVisibility visibility = before ? before->visibility : settings.hemicubes.visibility;
   for (int refinement = 0;; ++refinement) {
-    RadiositySolution next =
-        solveMesh({context, programs, scene, settings, onStage, refinement, checkpointOf(checkpoint, refinement)},
-                  std::move(mesh), visibility);
+    RadiositySolution next = solveMesh({context, programs, scene, settings, onStage, refinement,
+                                        checkpointOf(checkpoint, refinement), before ? before->moment.get() : nullptr},
+                                       std::move(mesh), visibility);
     next.hemicubes += solution.hemicubes;
     next.hemicubeSeconds += solution.hemicubeSeconds;
     next.solveSeconds += solution.solveSeconds;
@@ -233,6 +236,7 @@ std::map<std::uint32_t, double> weightsAround(const RadiositySolution& solution,
 
 /// The patches where they were solved.
 RadiosityMesh meshAboutOrigin(const Scene& scene, const RadiositySolution& solution) {
+  if (solution.moment) return solution.moment->mesh;
   RadiosityMesh mesh = solution.mesh;
   if (const glm::dvec3 origin = floatingOrigin(scene.bounds); origin != glm::dvec3(0.0)) {
     for (glm::dvec3& point : mesh.points) point -= origin;
@@ -247,7 +251,7 @@ HemicubePixels hemicubeOf(const gl::Context& context, gl::ProgramLibrary& progra
                           const RadiositySolution& solution, const RadiositySolutionSettings& settings,
                           std::uint32_t patch) {
   const RadiosityMesh mesh = meshAboutOrigin(scene, solution);
-  HemicubeSettings hemicubeSettings = withDeviations(settings).hemicubes;
+  HemicubeSettings hemicubeSettings = settingsFor(scene, settings).hemicubes;
   hemicubeSettings.visibility =
       solution.visibility == HemicubeVisibility::itemBuffer ? solution.visibility : HemicubeVisibility::rays;
   Hemicubes hemicubes(programs, context.capabilities(), mesh, hemicubeSettings);
@@ -260,7 +264,7 @@ RadiosityOrigins originsOf(const gl::Context& context, gl::ProgramLibrary& progr
                            const RadiositySolution& solution, const RadiositySolutionSettings& settings,
                            std::uint32_t patch, const glm::dvec3& corners, bool flat) {
   const RadiosityMesh mesh = meshAboutOrigin(scene, solution);
-  HemicubeSettings hemicubeSettings = withDeviations(settings).hemicubes;
+  HemicubeSettings hemicubeSettings = settingsFor(scene, settings).hemicubes;
   if (hemicubeSettings.visibility == HemicubeVisibility::automatic)
     hemicubeSettings.visibility = visibilityByCount(mesh, hemicubeSettings.resolution);
   Hemicubes hemicubes(programs, context.capabilities(), mesh, hemicubeSettings);

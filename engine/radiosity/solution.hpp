@@ -10,6 +10,7 @@
 #include "gl/context.hpp"
 #include "gl/program.hpp"
 #include "radiosity/hemicube_settings.hpp"
+#include "radiosity/moment_before.hpp"
 #include "radiosity/patches.hpp"
 #include "radiosity/solvers.hpp"
 
@@ -68,15 +69,19 @@ struct RadiositySolution {
   double hemicubeSeconds = 0.0, solveSeconds = 0.0;
   std::size_t entries = 0;  ///< stored form factors
   double repaired = 0.0;  ///< mean |row sum - fraction of fronts| before repair
+  std::shared_ptr<const RadiosityMoment> moment;  ///< for the next moment; null unless the scene moves
 };
 
 /// Throws Error(badInput) for scenes without a solution and for checkpoints of another scene, other settings or another
 /// version. `checkpoint`: every submission's rows are appended to it; a later run with the same scene and settings
 /// resumes from it, to the same bits. It stays (and one more per refinement) until removeCheckpoints(). `onStage`:
-/// false stops: throws Stopped, and finished work stays in the checkpoint.
+/// false stops: throws Stopped, and finished work stays in the checkpoint. `before`: a solution of the same scene at
+/// another time, by the same settings. Rows that saw nothing of what has changed are taken from it (not with
+/// refinements, which follow the light), so is the method of hemicubes, and its light is what the solver starts from.
 RadiositySolution solveScene(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
                              const RadiositySolutionSettings& settings, const std::filesystem::path& checkpoint = {},
-                             const std::function<bool(const RadiosityStage&)>& onStage = {});
+                             const std::function<bool(const RadiosityStage&)>& onStage = {},
+                             const RadiositySolution* before = nullptr);
 
 /// The form factors of a scene's first mesh only (refinements have others), so that parts of their rows can be computed
 /// separately. joinRowFiles() (row_file.hpp) joins them to the checkpoint that solveScene() would have written, to the

@@ -58,6 +58,17 @@ class Solve {
   }
 
   std::size_t size() const { return n_; }
+  /// The irradiance to begin with. In a dark channel the bound knows of no other than 0.
+  Vector start() const {
+    Vector start(settings_.start.begin(), settings_.start.end());
+    start.resize(n_, glm::dvec3(0.0));
+    const glm::dvec3 most = largest(system_.emission);
+    for (glm::dvec3& irradiance : start)
+      for (int c = 0; c < 3; ++c)
+        if (most[c] == 0.0) irradiance[c] = 0.0;
+    return start;
+  }
+  bool hasStart() const { return !settings_.start.empty(); }
   const RadiositySystem& system() const { return system_; }
 
   void product(const Vector& exitance, Vector& irradiance) {
@@ -184,7 +195,7 @@ void jacobi(Solve& solve, Vector exitance) {
 
 void gaussSeidel(Solve& solve) {
   const RadiositySystem& s = solve.system();
-  Vector exitance = s.emission, irradiance(solve.size());
+  Vector exitance = jacobiStep(s, solve.start()), irradiance(solve.size());
   for (;;) {
     glm::dvec3 change(0.0);
     for (std::size_t i = 0; i < solve.size(); ++i) {
@@ -209,7 +220,13 @@ void progressive(Solve& solve) {
   const RadiositySystem& s = solve.system();
   const std::size_t n = solve.size();
   const std::size_t shotsPerReport = std::max<std::size_t>(n / 10, 1);
-  Vector unshot = s.emission, irradiance(n, glm::dvec3(0.0));
+  Vector unshot = s.emission, irradiance = solve.start();
+  if (solve.hasStart()) {
+    const Vector shot = jacobiStep(s, irradiance);
+    solve.product(shot, irradiance);
+    unshot = jacobiStep(s, irradiance);
+    for (std::size_t i = 0; i < n; ++i) unshot[i] -= shot[i];
+  }
   for (std::size_t shots = 1;; ++shots) {
     std::size_t best = 0;
     double most = -1.0;
@@ -272,7 +289,7 @@ void anderson(Solve& solve) {
   constexpr std::size_t kHistory = 6;
   const RadiositySystem& s = solve.system();
   const std::size_t n = solve.size();
-  Vector exitance = s.emission, irradiance(n), lastNext, lastChange;
+  Vector exitance = jacobiStep(s, solve.start()), irradiance(n), lastNext, lastChange;
   std::deque<Vector> nexts, changes;  // differences between successive steps
   for (;;) {
     solve.product(exitance, irradiance);
@@ -318,7 +335,7 @@ void conjugateGradients(Solve& solve) {
     for (std::size_t i = 0; i < n; ++i) sum += s.areas[i] * s.reflectance[i] * a[i] * b[i];
     return sum;
   };
-  Vector h(n, glm::dvec3(0.0)), r(n), p(n), weighted(n), image(n);
+  Vector h = solve.start(), r(n), p(n), weighted(n), image(n);
   double lastBound = 1e300;
   for (;;) {
     // The true residual, from a Jacobi step.
@@ -378,7 +395,7 @@ RadiositySolved solveRadiosity(const RadiositySystem& system, const SolverSettin
   if (solver == RadiositySolver::conjugateGradients && !system.reciprocal)
     throwBadInput("solver cg: needs form factors repaired to A_i F_ij = A_j F_ji; use anderson otherwise");
   switch (solver) {
-    case RadiositySolver::jacobi: jacobi(solve, system.emission); break;
+    case RadiositySolver::jacobi: jacobi(solve, jacobiStep(system, solve.start())); break;
     case RadiositySolver::gaussSeidel: gaussSeidel(solve); break;
     case RadiositySolver::progressive: progressive(solve); break;
     case RadiositySolver::anderson: anderson(solve); break;

@@ -40,6 +40,7 @@ struct SolverSettings {
   RadiositySolver solver = RadiositySolver::automatic;
   double error = 1e-6;  ///< stop at this errorBound
   double mostProducts = 100000.0;  ///< progressive refinement stops within a product
+  std::span<const glm::dvec3> start{};  ///< irradiance from patches to begin with; empty: none
   std::function<bool(const RadiosityProgress&)> onStep;  ///< called after each product; false stops
 };
 

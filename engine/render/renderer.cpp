@@ -188,10 +188,12 @@ bool Renderer::follow(const gl::Context& context, gl::ProgramLibrary& programs, 
   if (!change.any()) return true;
   sceneExposure_ = scene.exposure;
   exposure_ = settings_.exposure.value_or(sceneExposure_);
-  if (geometry_ || !(analyse(scene) == features_) || floatingOrigin(scene.bounds) != origin_) return false;
+  if (!(analyse(scene) == features_) || floatingOrigin(scene.bounds) != origin_) return false;
+  const bool movesCamerasAlone = change.meshes.empty() && !change.anyLight() && !change.materials && !change.media;
+  // Takes its time, in which frames of what is there may be drawn.
+  if (geometry_ && !movesCamerasAlone && !geometry_->follow(change)) return false;
   view_.reset();
   surfacesAreNew_ = surfacesAreNew_ || !change.meshes.empty() || change.views;
-  const bool movesCamerasAlone = change.meshes.empty() && !change.anyLight() && !change.materials && !change.media;
   if (movesCamerasAlone) return true;
   sceneMoves_ = true;
   if (picture_) return picture_->follow(change);
@@ -200,9 +202,10 @@ bool Renderer::follow(const gl::Context& context, gl::ProgramLibrary& programs, 
     next.textures.clear();
     *moved_ = std::move(next);
   }
-  gpuScene_->update(change.meshes);
+  if (geometry_) gpuScene_->replaceMeshes();
+  else gpuScene_->update(change.meshes);
   traced_.update(change.meshes);
-  if (technique_ && !technique_->follow(change)) technique_.reset();
+  if (technique_ && !geometry_ && !technique_->follow(change)) technique_.reset();
   shadowRays_.reset();
   if (!change.meshes.empty() || change.lamps) lampShadowsMade_ = false;
   if (!change.meshes.empty() || change.sun) sunShadowMade_ = false;

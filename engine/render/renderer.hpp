@@ -76,8 +76,8 @@ class Renderer {
   /// Applies the settings whose cost is SettingCost::uniform; others need a new Renderer.
   void apply(const RenderSettings& settings);
   /// The scene that it was made of is posed at another time (scene/motion.hpp): textures and programs are kept, the
-  /// rest is made anew as far as the change asks for. False: a new Renderer is needed, as other features are, or the
-  /// technique draws geometry of its own.
+  /// rest is made anew as far as the change asks for. False: a new Renderer is needed, as other features are, or a
+  /// solution came from a file.
   bool follow(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene, const SceneChange& change);
   /// Samples of a pixel that each frame has while the view or the scene moves.
   int motionSamples() const;

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <set>
 #include <utility>
 
@@ -84,6 +85,18 @@ std::vector<std::size_t> poseMeshes(Scene& scene, double seconds) {
 }
 
 }  // namespace
+
+void SceneChange::add(const SceneChange& next) {
+  const std::vector<std::size_t> before = std::move(meshes);
+  meshes.clear();
+  std::ranges::set_union(before, next.meshes, std::back_inserter(meshes));
+  sun = sun || next.sun;
+  lamps = lamps || next.lamps;
+  materials = materials || next.materials;
+  media = media || next.media;
+  environment = environment || next.environment;
+  views = views || next.views;
+}
 
 VertexRange vertexRange(const Scene& scene, const Mesh& mesh) {
   std::uint32_t low = ~0u, high = 0;

@@ -28,6 +28,7 @@ struct SceneChange {
 
   bool anyLight() const { return sun || lamps || environment; }
   bool any() const { return !meshes.empty() || anyLight() || materials || media || views; }
+  void add(const SceneChange& next);
 };
 
 struct SceneMotion {

@@ -138,6 +138,32 @@ TEST_F(RadiositySolvers, TheBoundIsNeverBelowTheError) {
   }
 }
 
+// From the solution of another light, and from an arbitrary one; a channel that is dark has no light left from before.
+TEST_F(RadiositySolvers, AnySolutionIsAStartAndANearOneSavesProducts) {
+  cube().setReflectance(0.8);
+  RadiositySystem near = cube().system;
+  near.emission[0] += glm::dvec3(1e-3);
+  for (glm::dvec3& emission : near.emission) emission.z = 0.0;
+  const auto exact = solvedDirectly(near, 0);
+  for (const RadiositySolver solver : kAll) {
+    SolverSettings settings;
+    settings.solver = solver;
+    settings.error = 1e-6;
+    const std::vector<glm::dvec3> before = solveRadiosity(cube().system, settings).irradiance;
+    std::vector<glm::dvec3> arbitrary = before;
+    for (std::size_t i = 0; i < arbitrary.size(); ++i) arbitrary[i] *= i % 3 ? -2.0 : 30.0;
+    const double products = solveRadiosity(near, settings).progress.products;
+    for (const bool isNear : {true, false}) {
+      settings.start = isNear ? before : arbitrary;
+      const RadiositySolved solved = solveRadiosity(near, settings);
+      EXPECT_TRUE(solved.reached) << nameOf(solver);
+      EXPECT_LE(worstError(solved.exitance, exact), solved.progress.errorBound * (1.0 + 1e-6)) << nameOf(solver);
+      EXPECT_LT(solved.progress.products, isNear ? products : 1e9) << nameOf(solver);
+      for (const glm::dvec3& b : solved.exitance) ASSERT_EQ(b.z, 0.0) << nameOf(solver);
+    }
+  }
+}
+
 TEST_F(RadiositySolvers, StiffRoomsNeedFewerThanTwentyProducts) {
   for (const double rho : {0.9, 0.99, 0.999, 0.9999}) {
     cube().setReflectance(rho);
