@@ -250,12 +250,12 @@ int runWalk(WalkOptions options) {
   }
   options.common.apply();
   options.picture.readSettingsFile();
-  if (options.records()) options.picture.usualSamples = 1;  // frames are timed
-  const RenderSettings settings = options.picture.parse();
   if (options.scene.empty()) options.scene = (dataFolder() / "assets/atrium/day.json").string();
   if (!options.record.empty() && fs::exists(options.record) && !fs::is_directory(options.record))
     throwBadInput("--record {}: is a file, expected a folder", options.record);
   Scene scene = loadScene(options.scene);
+  if (options.records() && !scene.motion) options.picture.usualSamples = 1;  // frames are timed
+  const RenderSettings settings = options.picture.parse();
   if (!options.noFloor && scene.studio) addFloor(scene);
   if (!options.keys.empty()) {
     setKeyFrames(scene, options.keys, false);

@@ -42,7 +42,7 @@ class Motion : public testing::Test {
 };
 
 TEST_F(Motion, ARecordingHasThePicturesOfItsMoments) {
-  const std::string picture = " --technique direct --size 48x32 --pixel-samples 4";
+  const std::string picture = " --technique direct --size 48x32";
   RunResult result = lucerna("walk s.json --record frames --frames 3 --fps 2 --time 0.5" + picture);
   ASSERT_EQ(result.exitCode, 0) << result.err;
   for (const auto& [frame, time] :
