@@ -141,7 +141,7 @@ TEST_F(AntialiasingGl, StripesOnASurfaceThatTurnsAwayStaySharp) {
 TEST_F(AntialiasingGl, WhatOnlySomeSamplesShowIsLit) {
   constexpr float kLeft = 0.6f, kRight = 0.85f, kAlbedo = 0.4f;
   EdgeScene scene(static_cast<double>(kLeft));
-  for (const std::size_t corner : {1, 2}) scene.vertices[corner].position.x = kRight;
+  for (const std::size_t corner : {1u, 2u}) scene.vertices[corner].position.x = kRight;
   scene.materials[0].emission = glm::vec3(0.0f);
   scene.materials[0].diffuse = glm::vec3(kAlbedo);
   scene.environment.emplace().radiance = glm::vec3(1.0f);
@@ -350,11 +350,11 @@ TEST_F(AntialiasingGl, InMotionLeavesAndHighlightsHoldStill) {
     struct Errors {
       double frame = 0.0, change = 0.0;
     };
-    const auto errors = [&](bool reprojection, int samples) {
+    const auto errors = [&, &drawn = scene](bool reprojection, int samples) {  // clang 14 captures no binding by [&]
       RenderSettings settings = settingsFor(16);
       settings.reprojection = reprojection;
       settings.motionSamples = samples;
-      Renderer renderer(context(), programs(), scene, settings);
+      Renderer renderer(context(), programs(), drawn, settings);
       Errors sum;
       double all = 0.0;
       std::vector<glm::vec3> before;
