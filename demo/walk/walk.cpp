@@ -92,7 +92,7 @@ PartFolder framesOf(const WalkOptions& options, const Scene& scene, const Render
     throwBadInput(
         "--flicker: compares a frame with the one before it, which may be another part's: not with --part and "
         "--checkpoint");
-  if (cacheOf(renderer.technique()))
+  if (cacheOf(renderer.technique()) && !scene.motion)
     throwBadInput(
         "--technique irradiance-cache: a frame goes on from the one before it, which may be another part's: not with "
         "--part and --checkpoint");
@@ -153,6 +153,7 @@ int record(const WalkOptions& options, const Host& host, const gl::Context& cont
         if (!renderer->follow(context, programs, scene, change))
           renderer = std::make_unique<Renderer>(context, programs, scene, settings);
       }
+      if (scene.motion) renderer->forget();  // a moment's picture depends on no frame before
       if (stands) cameras[i] = scene.cameras.front();
       // All samples of paths, of which one alone is mere noise; all light, where each frame starts anew.
       if (pathOf(renderer->technique()) || scene.motion) renderer->renderToTheEnd(cameras[i]);
@@ -255,7 +256,8 @@ int runWalk(WalkOptions options) {
     throwBadInput("--record {}: is a file, expected a folder", options.record);
   Scene scene = loadScene(options.scene);
   if (options.records() && !scene.motion) options.picture.usualSamples = 1;  // frames are timed
-  const RenderSettings settings = options.picture.parse();
+  RenderSettings settings = options.picture.parse();
+  settings.fullFloatTarget = options.records() && scene.motion;  // as render --time
   if (!options.noFloor && scene.studio) addFloor(scene);
   if (!options.keys.empty()) {
     setKeyFrames(scene, options.keys, false);

@@ -42,22 +42,25 @@ class Motion : public testing::Test {
 };
 
 TEST_F(Motion, ARecordingHasThePicturesOfItsMoments) {
-  const std::string picture = " --technique direct --size 48x32";
-  RunResult result = lucerna("walk s.json --record frames --frames 3 --fps 2 --time 0.5" + picture);
-  ASSERT_EQ(result.exitCode, 0) << result.err;
-  for (const auto& [frame, time] :
-       {std::pair{"frames/frame_0000.png", "0.5"}, {"frames/frame_0001.png", "1"}, {"frames/frame_0002.png", "1.5"}}) {
-    result = lucerna("render s.json -o m.png --time " + std::string(time) + picture);
+  for (const std::string technique : {"direct", "irradiance-cache"}) {
+    const std::string picture = " --size 48x32 --technique " + technique;
+    RunResult result = lucerna("walk s.json --record frames --frames 3 --fps 2 --time 0.5" + picture);
     ASSERT_EQ(result.exitCode, 0) << result.err;
-    EXPECT_EQ(readBitmap(path(frame)).rgba, readBitmap(path("m.png")).rgba) << frame;
+    for (const auto& [frame, time] : {std::pair{"frames/frame_0000.png", "0.5"},
+                                      {"frames/frame_0001.png", "1"},
+                                      {"frames/frame_0002.png", "1.5"}}) {
+      result = lucerna("render s.json -o m.png --time " + std::string(time) + picture);
+      ASSERT_EQ(result.exitCode, 0) << result.err;
+      EXPECT_EQ(readBitmap(path(frame)).rgba, readBitmap(path("m.png")).rgba) << technique << " " << frame;
+    }
+    EXPECT_NE(readBitmap(path("frames/frame_0000.png")).rgba, readBitmap(path("frames/frame_0002.png")).rgba);
+    // Without --fps they are spread over the scene's two seconds.
+    result = lucerna("walk s.json --record spread --frames 3" + picture);
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    EXPECT_EQ(readBitmap(path("spread/frame_0001.png")).rgba, readBitmap(path("frames/frame_0001.png")).rgba);
+    result = lucerna("render s.json -o m.png --time 2" + picture);
+    EXPECT_EQ(readBitmap(path("spread/frame_0002.png")).rgba, readBitmap(path("m.png")).rgba);
   }
-  EXPECT_NE(readBitmap(path("frames/frame_0000.png")).rgba, readBitmap(path("frames/frame_0002.png")).rgba);
-  // Without --fps they are spread over the scene's two seconds.
-  result = lucerna("walk s.json --record spread --frames 3" + picture);
-  ASSERT_EQ(result.exitCode, 0) << result.err;
-  EXPECT_EQ(readBitmap(path("spread/frame_0001.png")).rgba, readBitmap(path("frames/frame_0001.png")).rgba);
-  result = lucerna("render s.json -o m.png --time 2" + picture);
-  EXPECT_EQ(readBitmap(path("spread/frame_0002.png")).rgba, readBitmap(path("m.png")).rgba);
 }
 
 TEST_F(Motion, KeyFramesCarryInAWalkAsInTheScene) {
