@@ -11,6 +11,7 @@
 #include "measure/light_kinds.hpp"
 #include "measure/reference.hpp"
 #include "measure/sequence.hpp"
+#include "pathtracer/path_frame.hpp"
 #include "pathtracer/path_sampler.hpp"
 #include "render/renderer.hpp"
 #include "render/techniques.hpp"
@@ -258,7 +259,8 @@ Row draw(const DynamicOptions& options, const gl::Context& context, gl::ProgramL
     else renderer->renderToTheEnd(moment.camera);
     gl::finish();
     row.ms.push_back(1e3 * secondsSince(start));
-    row.samples.push_back(options.live ? renderer->motionSamples() : settings.pixelSamples);
+    const int samples = options.live ? renderer->motionSamples() : settings.pixelSamples;
+    row.samples.push_back(pathOf(renderer->technique()) ? std::nan("") : samples);  // paths have settings of their own
     row.pictures.push_back(renderer->readRadiance());
   }
   renderer->drain();
