@@ -15,6 +15,7 @@
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "base/json.hpp"
+#include "base/provenance.hpp"
 #include "base/statistics.hpp"
 #include "bench/bench.hpp"
 #include "gl/draw.hpp"
@@ -266,7 +267,8 @@ void writeReference(const CommonOptions& common, const std::string& file) {
   input.common = common;
   Session session(input);
   nlohmann::ordered_json json{{"renderer", session.context.capabilities().renderer},
-                              {"driver", session.context.capabilities().version}};
+                              {"driver", session.context.capabilities().version},
+                              {"cpu", cpuName()}};
   for (const Requested& asked : requestedPictures()) {
     double seconds = 0.0;
     json["pictures"][asked.name] = summaryJson(summaryOf(render(session, asked, seconds)));

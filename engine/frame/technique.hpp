@@ -50,6 +50,8 @@ class FrameTechnique {
   virtual void collect(bool /*wait*/) {}
   /// Whether another frame of the same view would look the same.
   virtual bool isSettled() const { return true; }
+  /// Whether light is another in each frame although the scene rests: earlier frames show what was.
+  virtual bool lightChanges() const { return false; }
   /// For a picture to its end: whether light of the last frame is still to come. Throws Error(fault) where it never
   /// comes. `frames`: how many have been drawn since the first.
   virtual bool lacksLight(std::size_t /*frames*/) const { return false; }

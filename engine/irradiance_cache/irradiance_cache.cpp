@@ -157,6 +157,7 @@ void IrradianceCache::forget() {
   gl::clearToZero(textures, clearTexture_);
   cascades_.clear();
   counts_ = {};
+  settles_ = false;
   if (kept_) kept_->areValid = false;
   if (gather_) gather_->forget();
 }
@@ -450,8 +451,22 @@ void IrradianceCache::beginToFollow(bool fades) {
   movedBoxes_.upload(0, bytes, boxes.data());
 }
 
+// Each frame brings light one bounce further: all paths are traced again for it.
+bool IrradianceCache::stillSettles() {
+  constexpr std::uint32_t kBounces = 12;
+  settles_ = settles_ && frame_ < followedIn_ + kBounces;
+  return settles_;
+}
+
 IrradianceCache::Found IrradianceCache::findRecords(const Inputs& inputs) {
-  if (followed_) beginToFollow(inputs.fades);
+  if (settles_ && !inputs.fades) forget();  // a whole picture is that of a new cache
+  const bool settles = !followed_ && stillSettles();
+  if (followed_) {
+    beginToFollow(inputs.fades);
+    settles_ = cached_ && !cascades_.empty();
+    followedIn_ = nextFrame();
+  }
+  followed_ = followed_ || settles;
   const bool moved = !cascades_.empty() &&
                      !std::equal(cascades_.begin(), cascades_.end(), inputs.cascades.begin(), inputs.cascades.end(),
                                  [](const Cascade& a, const Cascade& b) { return a.firstCell == b.firstCell; });
@@ -460,7 +475,7 @@ IrradianceCache::Found IrradianceCache::findRecords(const Inputs& inputs) {
   place(inputs);
   cascades_ = inputs.cascades;
   // Where other light than that of lamps has changed nothing kept holds: records in view are lit as new ones are.
-  const bool relights = kept_ && followed_ && !isEmpty && !kept_->allAnew;
+  const bool relights = kept_ && followed_ && !settles && !isEmpty && !kept_->allAnew;
   // Nor where cascades have moved: hits know records by their slots, which belong to other cells now.
   if (kept_ && (moved || isEmpty || kept_->allAnew)) kept_->areValid = false, kept_->allAnew = false;
   if (followed_ && !isEmpty) keep(*keepFollowed_);

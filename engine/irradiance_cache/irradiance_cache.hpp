@@ -123,6 +123,8 @@ class IrradianceCache {
 
   void collect(bool wait = false);
   const Counts& counts() const { return counts_; }
+  /// After the scene has moved: light of further bounces, which is a frame late for each, still changes.
+  bool settles() const { return settles_; }
   const IrradianceCacheSettings& settings() const { return settings_; }
   std::uint32_t nextFrame() const { return sees_ ? frame_ : frame_ + 1; }  ///< the next update's number
   const gl::Texture& irradiance() const { return irradiance_; }
@@ -140,6 +142,7 @@ class IrradianceCache {
   static std::array<GLuint, kWorkWords> noWork();  ///< groups of all dispatches: 0 by 1 by 1
 
   void beginToFollow(bool fades);
+  bool stillSettles();
   struct Found {
     bool relights;  ///< all records are to be lit again by what their paths hit
     float mostChange;
@@ -168,6 +171,8 @@ class IrradianceCache {
   float typicalIrradiance_;  ///< the scene's now
   bool clearTexture_, followed_ = false;  ///< the second: since the last update
   bool cached_;  ///< paths end at records
+  bool settles_ = false;
+  std::uint32_t followedIn_ = 0;  ///< the frame in which the scene last moved
   std::size_t slots_, capacity_;
   std::uint32_t frame_ = 0;
   bool sees_ = false;  ///< since the last update

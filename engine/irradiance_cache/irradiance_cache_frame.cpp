@@ -113,13 +113,12 @@ bool IrradianceCacheFrame::record(gl::TimeQuery& timer, const FrameView& view, F
   volumeDirection_ = volume.direction;
   if (view.isNew) since_ = cache_.nextFrame();
   const IrradianceCache::Counts& counts = cache_.counts();
-  settled_ = !view.isNew && counts.frame >= since_ && counts.waiting == 0;
+  settled_ = !view.isNew && counts.frame >= since_ && counts.waiting == 0 && !cache_.settles();
   const bool isLit = (settled_ && parts_.settings.reuse) || effort.isFurtherSample;
   const bool reflectsAnew = reflections_ && parts_.settings.pixelSamples > 1;  // another point of each pixel
   if (isLit && !reflectsAnew) return false;
   const Reflections::Share share =
-      reflections_ ? reflections_->shareOf(view.sample, parts_.settings.pixelSamples, effort)
-                   : Reflections::Share{};
+      reflections_ ? reflections_->shareOf(view.sample, parts_.settings.pixelSamples, effort) : Reflections::Share{};
   if (isLit && share.rays == 0) {
     reflections_->clear();
     return false;

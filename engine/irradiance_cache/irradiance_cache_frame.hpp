@@ -43,6 +43,7 @@ class IrradianceCacheFrame final : public FrameTechnique {
     if (reflections_) reflections_->bindForShading();
   }
   void collect(bool wait) override { cache_.collect(wait); }
+  bool lightChanges() const override { return cache_.settles(); }
   bool isSettled() const override { return settled_; }
   bool lacksLight(std::size_t frames) const override;
   void forget() override;

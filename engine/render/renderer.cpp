@@ -588,7 +588,7 @@ bool Renderer::beginView(const Camera& camera, const Camera& volumeCamera) {
 }
 
 void Renderer::render(const Camera& camera, const Camera& volumeCamera) {
-  const bool moves = moves_ = beginView(camera, volumeCamera);
+  const bool viewMoves = beginView(camera, volumeCamera), moves = moves_ = viewMoves || lightChanges();
   if (!accumulates()) {
     drawSample(0, {.isLive = true});
   } else if (!isSettled()) {
@@ -613,7 +613,7 @@ void Renderer::render(const Camera& camera, const Camera& volumeCamera) {
 // Frames with all their light are added up in order; until then, and while the view moves, the running mean is shown.
 void Renderer::showAccumulated(int sample, bool moves) {
   const gl::TimeQuery::Scope stage(timer_, "antialiasing");
-  const bool sceneMoves = std::exchange(sceneMoves_, false);
+  const bool sceneMoves = std::exchange(sceneMoves_, false) || lightChanges();
   const bool hasAllLight = !technique_ || technique_->isSettled();
   if (!hasAllLight) antialiasing_.clear();
   else if (sample == antialiasing_.count()) antialiasing_.add(radiance_, noAttributes_);

@@ -126,6 +126,7 @@ class Renderer {
   void drawSamples(const Camera& camera, const Camera& volumeCamera, FrameEffort effort);
   void showAccumulated(int sample, bool moves);
   void chooseMotionSamples(int drawn);
+  bool lightChanges() const { return technique_ && technique_->lightChanges(); }
   void toneMap();
   void endFrame();
   FrameView viewOf(const Camera& camera, const Camera& volumeCamera, const glm::dvec2& offset = glm::dvec2(0.0)) const;

@@ -86,6 +86,32 @@ Curve curveOf(const GltfFile& file, const Value& sampler, std::size_t width, con
   return curve;
 }
 
+/// Morph targets of a node's mesh.
+std::size_t morphTargetsOf(const GltfFile& file, std::size_t node) {
+  const Value of = file.root().at("nodes").at(node);
+  if (!of.has("mesh")) return 0;
+  const Value mesh = file.root().at("meshes").at(file.indexOf(of.at("mesh"), "meshes"));
+  if (!mesh.has("primitives") || !mesh.at("primitives").json.is_array() || mesh.at("primitives").json.empty()) return 0;
+  const Value first = mesh.at("primitives").at(std::size_t{0});
+  return first.json.is_object() && first.has("targets") ? first.at("targets").json.size() : 0;
+}
+
+void checkWeights(const GltfFile& file, std::size_t node, const Curve& curve, const Value& output) {
+  const std::size_t targets = morphTargetsOf(file, node);
+  if (targets > 0 && curve.width != targets)
+    output.fail(fmt::format("a weight at each time for each of {} morph targets of node {}, not {}", targets, node,
+                            curve.width));
+}
+
+void checkRotations(const Curve& curve, const Value& output) {
+  const bool hasTangents = curve.interpolation == Curve::Interpolation::tangents;
+  for (std::size_t key = 0; key < curve.times.size(); ++key) {
+    const double* quaternion = &curve.values[4 * (hasTangents ? 3 * key + 1 : key)];
+    if (std::all_of(quaternion, quaternion + 4, [](double v) { return v == 0.0; }))
+      output.fail(fmt::format("rotations, not (0, 0, 0, 0) at {:g} s", curve.times[key]));
+  }
+}
+
 }  // namespace
 
 void GltfAnimations::addChannel(const GltfFile& file, const Value& animation, const Value& channel) {
@@ -125,8 +151,11 @@ void GltfAnimations::addChannel(const GltfFile& file, const Value& animation, co
     if (other.node == *node && other.path == path)
       return leaveOut(fmt::format("a second animation of the {} of node {}", name, *node));
   const std::size_t width = path == Path::weights ? 0 : path == Path::rotation ? 4 : 3;
-  channels_.push_back({*node, path, curveOf(file, samplerOf(), width, fmt::format("node {}", *node))});
-  channels_.back().curve.isRotation = path == Path::rotation;
+  Curve curve = curveOf(file, samplerOf(), width, fmt::format("node {}", *node));
+  curve.isRotation = path == Path::rotation;
+  if (path == Path::rotation) checkRotations(curve, samplerOf().at("output"));
+  if (path == Path::weights) checkWeights(file, *node, curve, samplerOf().at("output"));
+  channels_.push_back({*node, path, std::move(curve)});
 }
 
 /// False if nothing here moves it, if there is no such member, or if it is animated already.

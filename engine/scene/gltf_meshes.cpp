@@ -197,6 +197,9 @@ std::vector<bool> GltfMeshes::skin(GltfVertices& vertices, std::size_t index, co
     for (std::size_t i = 0; i < count; ++i)
       for (std::size_t k = 0; k < 4; ++k) {
         const double weight = weights.at(corners.used[i], k), joint = joints.at(corners.used[i], k);
+        if (!std::isfinite(weight))
+          throwBadInput("{}: {}: vertex {} has no finite weight in WEIGHTS_{}", file_->path().string(), attributes.key,
+                        corners.used[i], set);
         if (!(weight > 0.0)) continue;
         if (!(joint >= 0.0 && joint < static_cast<double>(worldFromMesh.size())))
           throwBadInput("{}: {}: vertex {} names joint {}, the skin has {}", file_->path().string(), attributes.key,

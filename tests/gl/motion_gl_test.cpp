@@ -290,6 +290,38 @@ TEST_F(KeptHitsGl, WaitWhereTheBudgetIsSpent) {
   EXPECT_LT(frames, 200);
 }
 
+// Light that goes out, after which all rests: light of further bounces goes too, in a second's frames.
+TEST_F(KeptHitsGl, LightThatGoesOutLeavesNoneBehind) {
+  struct Case {
+    const char* name;
+    bool isLamp, keepsHits;
+  };
+  for (const Case& c :
+       {Case{"lamp", true, true}, Case{"lamp, all traced anew", true, false}, Case{"emission", false, true}}) {
+    Scene scene = loadScene(room(0.1, 0.3, c.isLamp ? 0.02 : 2.0, c.isLamp ? 2.0 : 0.05));
+    const auto set = [&](float factor) {
+      if (c.isLamp) scene.points[0].intensity = glm::vec3(2.0f * factor);
+      else
+        for (Material& material : scene.materials)
+          if (material.name == "lamp") material.emission = glm::vec3(2.0f * factor);
+    };
+    RenderSettings s = settings();
+    s.of<IrradianceCacheSettings>().keepsHits = c.keepsHits;
+    Renderer live(context(), programs(), scene, s);
+    live.renderToTheEnd(scene.cameras.front());
+    SceneChange change;
+    (c.isLamp ? change.lamps : change.materials) = true;
+    set(0.1f);
+    ASSERT_TRUE(live.follow(context(), programs(), scene, change));
+    int frames = 0;
+    for (; frames == 0 || (cacheOf(live.technique())->settles() && frames < 100); ++frames)
+      live.render(scene.cameras.front());
+    EXPECT_LT(frames, 60) << c.name;
+    const Image found = live.readRadiance(), right = anew(scene, s);
+    EXPECT_LT(wrongShare(found, right), 0.08) << c.name << ", " << frames << " frames";
+  }
+}
+
 struct KeptColour : test::SharedProgramsTest {};
 
 // Against the formula of EXT_texture_shared_exponent (OpenGL 4.3, 8.5.2) in double precision, for the whole range of
