@@ -374,6 +374,20 @@ TEST(GltfMotion, BrokenAnimationsAreNamedAndWhatIsNotPlayedIsSaid) {
   Gltf absent;
   animate(absent, 7, "translation", absent.floats({0, 0, 0, 1, 0, 0}, "VEC3"));
   EXPECT_TRUE(contains(absent.refusal(), "animations[0].channels[0].target.node"));
+  Gltf without;
+  animate(without, 0, "rotation", without.floats({0, 0, 0, 1, 0, 0, 0, 0}, "VEC4"));
+  EXPECT_TRUE(contains(without.refusal(), "rotations, not (0, 0, 0, 0) at 2 s")) << without.refusal();
+  Gltf morph;
+  morph.primitive()["targets"] = {{{"POSITION", morph.floats({0, 0, 1, 0, 0, 2, 0, 0, 3}, "VEC3")}}};
+  animate(morph, 0, "weights", morph.floats({0, 0, 1, 1}, "SCALAR"));
+  EXPECT_TRUE(contains(morph.refusal(), "each of 1 morph targets of node 0, not 2")) << morph.refusal();
+  Gltf skin;
+  skin.root["nodes"] = {{{"mesh", 0}, {"skin", 0}}};
+  skin.root["skins"] = {{{"joints", {0}}}};
+  skin.attributes()["JOINTS_0"] =
+      skin.accessor(skin.view(test::bytesOf(std::vector<std::uint8_t>(12, 0))), Gltf::kUnsignedByte, "VEC4", 3);
+  skin.attributes()["WEIGHTS_0"] = skin.floats({1, 0, 0, 0, std::nanf(""), 0, 0, 0, 1, 0, 0, 0}, "VEC4");
+  EXPECT_TRUE(contains(skin.refusal(), "vertex 1 has no finite weight in WEIGHTS_0")) << skin.refusal();
   Gltf twice;
   for (int i = 0; i < 2; ++i) animate(twice, 0, "translation", twice.floats({0, 0, 0, 1, 0, 0}, "VEC3"));
   twice.load();
