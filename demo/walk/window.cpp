@@ -249,6 +249,7 @@ void WalkWindow::act(Action action) {
     case Action::path:
       s.sides[static_cast<std::size_t>(s.layout == Layout::one ? s.shown : 1)].shows = Shows::reference;
       s.liveReferenceOn = true;
+      if (s.timeRuns()) s.say("the reference is shown when time and view rest: P holds the time");
       break;
     case Action::undo: stepThrough(s.undo, s.redo); break;
     case Action::redo: stepThrough(s.redo, s.undo); break;
