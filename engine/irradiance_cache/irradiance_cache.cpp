@@ -20,6 +20,7 @@ namespace {
 constexpr std::uint32_t kSegmentsOfAll = 64;  // of a path that meets no records; it misses a share of albedo^64
 constexpr std::uint32_t kSoftwareIterations = 2000,
                         kMostIterations = 1u << 16;  // like the path tracer's, less one segment
+constexpr std::uint32_t kBounces = 12;  // frames in which light still changes once the scene has come to rest
 constexpr std::size_t kMostPaths = std::size_t{1} << 20;  // per submission
 constexpr std::size_t kKeyPixels = std::size_t{1} << 23;  // number that a key distinguishes
 
@@ -368,6 +369,7 @@ void IrradianceCache::makeKept() {
 void IrradianceCache::relight() {
   KeptHits& kept = *kept_;
   list(0);  // places new records
+  kept.light.buffer().clear(0);  // what paths make records for has no light yet
   {
     const gl::ComputePass pass("cache light of lamps", gl::Barrier::storage | gl::Barrier::textureFetch);
     kept.lamps->use();
@@ -451,9 +453,8 @@ void IrradianceCache::beginToFollow(bool fades) {
   movedBoxes_.upload(0, bytes, boxes.data());
 }
 
-// Each frame brings light one bounce further: all paths are traced again for it.
+// Each frame brings light one bounce further; in the last one all paths are traced, as in a view at rest.
 bool IrradianceCache::stillSettles() {
-  constexpr std::uint32_t kBounces = 12;
   settles_ = settles_ && frame_ < followedIn_ + kBounces;
   return settles_;
 }
@@ -475,7 +476,8 @@ IrradianceCache::Found IrradianceCache::findRecords(const Inputs& inputs) {
   place(inputs);
   cascades_ = inputs.cascades;
   // Where other light than that of lamps has changed nothing kept holds: records in view are lit as new ones are.
-  const bool relights = kept_ && followed_ && !settles && !isEmpty && !kept_->allAnew;
+  const bool isLast = settles && nextFrame() >= followedIn_ + kBounces;
+  const bool relights = kept_ && followed_ && !isLast && !isEmpty && !kept_->allAnew;
   // Nor where cascades have moved: hits know records by their slots, which belong to other cells now.
   if (kept_ && (moved || isEmpty || kept_->allAnew)) kept_->areValid = false, kept_->allAnew = false;
   if (followed_ && !isEmpty) keep(*keepFollowed_);

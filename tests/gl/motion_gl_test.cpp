@@ -322,6 +322,21 @@ TEST_F(KeptHitsGl, LightThatGoesOutLeavesNoneBehind) {
   }
 }
 
+// Where surfaces begin to move, records are dropped, and paths make others under the same numbers.
+TEST_F(KeptHitsGl, RecordsThatPathsMakeHaveNoLightOfOlderOnes) {
+  Scene scene = loadScene(room(0.5, 1.0, 0.02, 2.0));
+  RenderSettings s = settings();
+  s.of<IrradianceCacheSettings>().cascades.cells = 16;
+  Renderer live(context(), programs(), scene, s);
+  live.renderToTheEnd(scene.cameras.front());
+  for (const double t : {1.0, 2.0, 3.0, 4.0}) tracedAt(live, scene, t);  // the lamp alone
+  (*scene.motion)[SceneMotion::Part::points] = [](Scene& posed, double) {
+    posed.points[0].intensity = glm::vec3(0.1f);
+  };
+  for (int frame = 0; frame < 20; ++frame) tracedAt(live, scene, 8.0 + 0.05 * frame);
+  EXPECT_LT(wrongShare(live.readRadiance(), anew(scene, s)), 0.04);
+}
+
 struct KeptColour : test::SharedProgramsTest {};
 
 // Against the formula of EXT_texture_shared_exponent (OpenGL 4.3, 8.5.2) in double precision, for the whole range of
