@@ -23,15 +23,19 @@ constexpr std::array<Face, 6> kFaces{{{{1, 0, 0}, {0, -1, 0}},
 
 float largest(const glm::vec3& v) { return std::max({v.x, v.y, v.z}); }
 
-void placePlanes(LightViews& views, const Bounds& scene) {
+double farPlane(const glm::dvec3& position, const Bounds& box) {
   double farthest = 0.0;
   for (int corner = 0; corner < 8; ++corner) {
-    const glm::dvec3 p(corner & 1 ? scene.max.x : scene.min.x, corner & 2 ? scene.max.y : scene.min.y,
-                       corner & 4 ? scene.max.z : scene.min.z);
-    farthest = std::max(farthest, glm::length(p - views.position));
+    const glm::dvec3 p(corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
+                       corner & 4 ? box.max.z : box.min.z);
+    farthest = std::max(farthest, glm::length(p - position));
   }
-  views.far = farthest > 0.0 ? 1.01 * farthest : 1.0;
-  views.near = views.far / 2000.0;
+  return farthest > 0.0 ? 1.01 * farthest : 1.0;
+}
+
+void placePlanes(LightViews& views, const Scene& scene) {
+  views.far = farPlane(views.position, scene.bounds);
+  views.near = farPlane(views.position, scene.mainAround(views.position)) / 2000.0;
 }
 
 glm::dmat4 view(const LightViews& views, const glm::dvec3& axis, const glm::dvec3& up) {
@@ -59,7 +63,7 @@ double LightViews::largestSolidAngle(int size) const {
          std::min(4.0 * std::asin(t2 / (1.0 + t2)) + t2 * width * width, 4.0 * t2);
 }
 
-LightViews lightViews(const SpotLight& light, const Bounds& scene) {
+LightViews lightViews(const SpotLight& light, const Scene& scene) {
   LightViews views{light.position,
                    light.intensity,
                    light.radius,
@@ -73,7 +77,7 @@ LightViews lightViews(const SpotLight& light, const Bounds& scene) {
   return views;
 }
 
-LightViews lightViews(const PointLight& light, const Bounds& scene) {
+LightViews lightViews(const PointLight& light, const Scene& scene) {
   LightViews views;
   views.position = light.position;
   views.intensity = light.intensity;
@@ -112,13 +116,13 @@ LightViews viewFromOutside(const PointLight& light, const Bounds& scene) {
 std::vector<LightViews> spotViews(const Scene& scene) {
   std::vector<LightViews> views;
   for (std::size_t i = 0; i < scene.points.size(); ++i)
-    if (largest(scene.points[i].intensity) > 0.0f && isFarOutside(scene.points[i], scene.bounds)) {
-      views.push_back(viewFromOutside(scene.points[i], scene.bounds));
+    if (largest(scene.points[i].intensity) > 0.0f && isFarOutside(scene.points[i], scene.main())) {
+      views.push_back(viewFromOutside(scene.points[i], scene.main()));
       views.back().index = i;
     }
   for (std::size_t i = 0; i < scene.spots.size(); ++i)
     if (largest(scene.spots[i].intensity) > 0.0f) {
-      views.push_back(lightViews(scene.spots[i], scene.bounds));
+      views.push_back(lightViews(scene.spots[i], scene));
       views.back().index = i;
     }
   return views;
@@ -127,15 +131,15 @@ std::vector<LightViews> spotViews(const Scene& scene) {
 std::vector<LightViews> pointViews(const Scene& scene) {
   std::vector<LightViews> views;
   for (std::size_t i = 0; i < scene.points.size(); ++i)
-    if (largest(scene.points[i].intensity) > 0.0f && !isFarOutside(scene.points[i], scene.bounds)) {
-      views.push_back(lightViews(scene.points[i], scene.bounds));
+    if (largest(scene.points[i].intensity) > 0.0f && !isFarOutside(scene.points[i], scene.main())) {
+      views.push_back(lightViews(scene.points[i], scene));
       views.back().index = i;
     }
   return views;
 }
 
 float typicalIrradiance(const Scene& scene) {
-  const double distance = 0.25 * glm::length(scene.bounds.extent());
+  const double distance = 0.25 * glm::length(scene.main().extent());
   double result = scene.sun ? static_cast<double>(largest(scene.sun->irradiance)) : 0.0;
   const auto add = [&](const glm::vec3& intensity) {
     if (distance > 0.0) result = std::max(result, static_cast<double>(largest(intensity)) / (distance * distance));

@@ -36,8 +36,8 @@ struct LightViews {
   double largestSolidAngle(int size) const;
 };
 
-LightViews lightViews(const SpotLight& light, const Bounds& scene);
-LightViews lightViews(const PointLight& light, const Bounds& scene);
+LightViews lightViews(const SpotLight& light, const Scene& scene);
+LightViews lightViews(const PointLight& light, const Scene& scene);
 
 /// The views of a scene's spots and omnidirectional lights, only those with intensity > 0. An omnidirectional light
 /// well outside of the scene is among the first: one view holds all of the scene, which would be few texels of a cube's

@@ -43,7 +43,7 @@ std::vector<SunCascade> placeSunCascades(const SunCascadeSettings& settings, con
                                          const glm::dvec3& sunDirection, const SunFrustum& whole, const Camera& camera,
                                          double aspect, double near, int mapSize) {
   CHECK(settings.cascades >= 1 && settings.cascades <= SUN_MAX_CASCADES, "cascades = {}", settings.cascades);
-  const Bounds& bounds = scene.bounds;
+  const Bounds bounds = scene.mainAround(camera.position);
   const double diagonal = std::max(glm::length(bounds.extent()), 1e-6);
   const double farthest =
       glm::length(glm::max(glm::abs(bounds.min - camera.position), glm::abs(bounds.max - camera.position)));

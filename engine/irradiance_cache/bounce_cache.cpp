@@ -92,13 +92,14 @@ void offerTriangle(const Scene& scene, const Material& material, std::uint32_t f
       const glm::vec2 texCoord = static_cast<float>(own) * corners[0]->texCoord +
                                  static_cast<float>(second) * corners[1]->texCoord +
                                  static_cast<float>(third) * corners[2]->texCoord;
-      if (isCutOut(scene, material, texCoord)) continue;
+      const glm::dvec3 position = a + second * ab + third * ac;
+      if (!scene.isMain(position) || isCutOut(scene, material, texCoord)) continue;
       glm::dvec3 normal = own * glm::dvec3(corners[0]->normal) + second * glm::dvec3(corners[1]->normal) +
                           third * glm::dvec3(corners[2]->normal);
       const double length = glm::length(normal);
       normal = length > 1e-6 ? normal / length : cross / area;
       BounceCache::Point point{};
-      point.position = a + second * ab + third * ac;
+      point.position = position;
       point.triangle = first / 3;
       point.barycentrics = glm::vec2(second, third);
       chooser.offer(point, normal);
@@ -110,11 +111,11 @@ void offerTriangle(const Scene& scene, const Material& material, std::uint32_t f
 BounceCache bounceCache(const Scene& scene, int across) {
   CHECK(across >= 1 && across <= 64, "{} cells", across);
   BounceCache result;
-  const glm::dvec3 extent = scene.bounds.extent();
+  const glm::dvec3 extent = scene.main().extent();
   const double longest = std::max({extent.x, extent.y, extent.z});
   result.cellSize = longest > 0.0 ? longest / across : 1.0;
   // Half a cell of air around the scene, so that its outermost walls lie in the middle of cells.
-  result.minimum = scene.bounds.empty() ? glm::dvec3(0.0) : scene.bounds.min - 0.5 * result.cellSize;
+  result.minimum = scene.bounds.empty() ? glm::dvec3(0.0) : scene.main().min - 0.5 * result.cellSize;
   for (int axis = 0; axis < 3; ++axis)
     result.cells[axis] = std::max(1, static_cast<int>(std::ceil(extent[axis] / result.cellSize + 1.0 - 1e-6)));
   Chooser chooser(result);

@@ -65,7 +65,7 @@ std::vector<Emitter> emittersOf(const Scene& scene, const std::vector<float>& pi
       emitter.weight = static_cast<double>(pickDensity[i / 3]) * emitter.area;
       if (!(emitter.weight > 0.0) || !std::isfinite(emitter.weight)) continue;
       emitter.order =
-          orderOf(scene.bounds, (emitter.corners[0] + emitter.corners[1] + emitter.corners[2]) / 3.0, cross);
+          orderOf(scene.main(), (emitter.corners[0] + emitter.corners[1] + emitter.corners[2]) / 3.0, cross);
       emitters.push_back(emitter);
     }
   }
@@ -151,7 +151,7 @@ EmissionPoints emissionPoints(const Scene& scene, const std::vector<float>& pick
     points.push_back(points[i]);
     points.back().normal = -points[i].normal;
   }
-  for (Point& point : points) point.order = orderOf(scene.bounds, point.position, point.normal);
+  for (Point& point : points) point.order = orderOf(scene.main(), point.position, point.normal);
   std::stable_sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.order < b.order; });
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto place = static_cast<std::uint32_t>(i);

@@ -153,7 +153,8 @@ IrradianceCache::Inputs IrradianceCacheFrame::inputs(const FrameView& view,
                                                      const std::vector<ReflectiveShadowMap::Outputs>& maps,
                                                      bool mapsAreNew, bool fades) const {
   const glm::dvec2 size(visible_.size());
-  return {placeCascadesAround(settings().cascades, parts_.drawn().scene().bounds, view.volumeCamera, size.x / size.y),
+  return {placeCascadesAround(settings().cascades, parts_.drawn().scene().mainAround(view.volumeCamera.position),
+                              view.volumeCamera, size.x / size.y),
           view.camera,
           view.offset,
           glm::mat4(glm::inverse(view.clip)),
@@ -164,9 +165,10 @@ IrradianceCache::Inputs IrradianceCacheFrame::inputs(const FrameView& view,
 }
 
 Image IrradianceCacheFrame::readFromCells(const CascadeSettings& cascades, float blendBand, int paths) const {
-  return cache_.readFromCells(cascades,
-                              placeCascades(cascades, parts_.drawn().scene().bounds, volumePosition_, volumeDirection_),
-                              blendBand, paths);
+  return cache_.readFromCells(
+      cascades,
+      placeCascades(cascades, parts_.drawn().scene().mainAround(volumePosition_), volumePosition_, volumeDirection_),
+      blendBand, paths);
 }
 
 void IrradianceCacheFrame::forget() {

@@ -129,7 +129,7 @@ LightGather::LightGather(gl::ProgramLibrary& programs, const gl::Capabilities& c
     makeBounces(programs, capabilities, scene, origin, settings.bounceCells,
                 gl::with(rays, {{"OWN", 1}, {"BOUNCED", 1}, {"LINKS", 1}, {"RAYS", 1}}));
   if (!(sun_ || lamp_ || emission_)) return;
-  const glm::dvec3 extent = scene.bounds.extent();
+  const glm::dvec3 extent = scene.main().extent();
   rayEnd_ = static_cast<float>(1e-4 * std::max({extent.x, extent.y, extent.z}));
 }
 

@@ -50,9 +50,10 @@ namespace {
 /// they are as wide as it takes to reach the scene's far end.
 void reachScene(CascadeSettings& cascades, const Scene& scene) {
   if (cascades.heldInScene || cascades.cellSize > 0.0 || scene.bounds.empty() || scene.cameras.empty()) return;
-  const glm::dvec3 eye = scene.cameras.front().position, nearest = glm::clamp(eye, scene.bounds.min, scene.bounds.max);
+  const Bounds& main = scene.main();
+  const glm::dvec3 eye = scene.cameras.front().position, nearest = glm::clamp(eye, main.min, main.max);
   if (eye == nearest) return;
-  const glm::dvec3 extent = scene.bounds.extent();
+  const glm::dvec3 extent = main.extent();
   const double farthest = glm::length(eye - nearest) + glm::length(extent);
   const double scenes = cascades.spanOfScene * std::max({extent.x, extent.y, extent.z}) / cascades.cells;
   cascades.cellSize = std::max(scenes, 2.0 * farthest / (cascades.cells * (1.0 + cascades.push)));
@@ -110,7 +111,7 @@ std::vector<ReflectiveShadowMap::Outputs> LpvFrame::recordCameraMap(gl::TimeQuer
     eye.position -= toEdge * camera.direction;
   }
   eye.innerAngle = 0.0;
-  return {cameraMap_->record(parts_.drawn(), lightViews(eye, parts_.drawn().scene().bounds))};
+  return {cameraMap_->record(parts_.drawn(), lightViews(eye, parts_.drawn().scene()))};
 }
 
 bool LpvFrame::record(gl::TimeQuery& timer, const FrameView& view, FrameEffort) {
@@ -118,10 +119,10 @@ bool LpvFrame::record(gl::TimeQuery& timer, const FrameView& view, FrameEffort) 
   if (!volume_) return false;
   const Scene& scene = parts_.drawn().scene();
   const glm::dvec4 lightPosition = glm::inverse(parts_.sun.clipFromWorld) * glm::dvec4(0.0, 0.0, -1.0, 1.0);
-  const LpvInputs inputs{
-      maps_->record(timer),
-      placeCascades(settings().cascades, scene.bounds, view.volumeCamera.position, view.volumeCamera.direction),
-      typicalIrradiance(scene), glm::vec3(lightPosition), recordCameraMap(timer, view.volumeCamera)};
+  const LpvInputs inputs{maps_->record(timer),
+                         placeCascades(settings().cascades, scene.mainAround(view.volumeCamera.position),
+                                       view.volumeCamera.position, view.volumeCamera.direction),
+                         typicalIrradiance(scene), glm::vec3(lightPosition), recordCameraMap(timer, view.volumeCamera)};
   // The volume's light is kept while its grids stay in place, unless it uses surfels seen by the camera.
   const shared::CascadeConstants constants = lpvConstants(settings(), inputs.cascades, inputs.referenceIrradiance);
   const auto liesWhere = [](const shared::CascadeGrid& a, const shared::CascadeGrid& b) {

@@ -17,10 +17,10 @@ constexpr int kRayGroup = 64;
 
 LightVisibility::LightVisibility(gl::ProgramLibrary& programs, const Scene& scene, const PathScene& traced,
                                  const gl::Buffer& constants) {
-  const glm::dvec3 extent = scene.bounds.extent();
+  const glm::dvec3 extent = scene.main().extent();
   const double cell = std::max({extent.x, extent.y, extent.z, 1e-30}) / kCells;
   cell_ = static_cast<float>(cell);
-  min_ = glm::vec3(scene.bounds.min - traced.origin());
+  min_ = glm::vec3(scene.main().min - traced.origin());
   cells_ = glm::clamp(glm::ivec3(glm::ceil(extent / cell)), glm::ivec3(1), glm::ivec3(kCells));
   const std::vector<glm::uvec2> zeros(static_cast<std::size_t>(cells_.x * cells_.y * cells_.z * kKinds));
   counts_ = gl::BufferTexture("light visibility", gl::Format::r32ui, zeros.size() * sizeof zeros[0], zeros.data(),

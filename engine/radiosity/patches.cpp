@@ -313,8 +313,10 @@ RadiosityMesh makePatches(const Scene& scene, const PatchSettings& settings) {
   // Triangles become patches: welded, turned to their normals, each once.
   RadiosityMesh mesh;
   Bounds bounds;
-  for (const std::uint32_t index : scene.indices)
-    if (isFinite(scene.vertices[index].position)) bounds.add(glm::dvec3(scene.vertices[index].position));
+  for (const std::uint32_t index : scene.indices) {
+    const glm::vec3& p = scene.vertices[index].position;
+    if (isFinite(p) && scene.isMain(glm::dvec3(p))) bounds.add(glm::dvec3(p));
+  }
   const glm::dvec3 extent = bounds.extent();
   mesh.extent = std::max({extent.x, extent.y, extent.z});
   Welder welder(mesh.points, settings.weld * mesh.extent);

@@ -74,7 +74,7 @@ RadiositySolutionSettings settingsFor(const Scene& scene, RadiositySolutionSetti
 }
 
 double largestExtent(const Scene& scene) {
-  const glm::dvec3 extent = scene.bounds.extent();
+  const glm::dvec3 extent = scene.main().extent();
   return std::max({extent.x, extent.y, extent.z});
 }
 
@@ -124,7 +124,7 @@ FormFactorParts::FormFactorParts(const gl::Context& context, gl::ProgramLibrary&
                                  const RadiositySolutionSettings& requestedSettings)
     : work_(std::make_unique<Work>()) {
   RadiositySolutionSettings settings = settingsFor(asked, requestedSettings);
-  if (const glm::dvec3 origin = floatingOrigin(asked.bounds); origin != glm::dvec3(0.0))
+  if (const glm::dvec3 origin = floatingOrigin(asked.main()); origin != glm::dvec3(0.0))
     work_->moved = movedTo(asked, origin);
   const Scene& scene = work_->moved ? *work_->moved : asked;
   work_->mesh = patchesWithBacks(context, programs, scene, patchesOf(scene, settings));
@@ -170,7 +170,7 @@ RadiositySolution solveScene(const gl::Context& context, gl::ProgramLibrary& pro
                              const RadiositySolution* before) {
   // Far from the origin, floats cannot represent the patches: solve near the origin, and return the scene's own
   // coordinates.
-  if (const glm::dvec3 origin = floatingOrigin(scene.bounds); origin != glm::dvec3(0.0)) {
+  if (const glm::dvec3 origin = floatingOrigin(scene.main()); origin != glm::dvec3(0.0)) {
     RadiositySolution solution =
         solveScene(context, programs, movedTo(scene, origin), asked, checkpoint, onStage, before);
     for (glm::dvec3& point : solution.mesh.points) point += origin;
@@ -238,7 +238,7 @@ std::map<std::uint32_t, double> weightsAround(const RadiositySolution& solution,
 RadiosityMesh meshAboutOrigin(const Scene& scene, const RadiositySolution& solution) {
   if (solution.moment) return solution.moment->mesh;
   RadiosityMesh mesh = solution.mesh;
-  if (const glm::dvec3 origin = floatingOrigin(scene.bounds); origin != glm::dvec3(0.0)) {
+  if (const glm::dvec3 origin = floatingOrigin(scene.main()); origin != glm::dvec3(0.0)) {
     for (glm::dvec3& point : mesh.points) point -= origin;
     for (Patch& p : mesh.patches) p.centroid -= origin;
   }

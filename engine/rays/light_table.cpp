@@ -63,7 +63,7 @@ LightTable lightTable(const Scene& scene, const glm::dvec3& origin, bool sunApar
   LightTable table;
   const auto place = [&](const glm::dvec3& p) { return glm::vec3(p - origin); };
   std::vector<double> powers;  // of each light
-  const double radius = scene.bounds.empty() ? 1.0 : std::max(0.5 * glm::length(scene.bounds.extent()), 1e-300);
+  const double radius = scene.bounds.empty() ? 1.0 : std::max(0.5 * glm::length(scene.main().extent()), 1e-300);
   const double disc = kPi * radius * radius;
   const auto add = [&](const shared::PathLight& light, double power) {
     if (!(power > 0.0)) return;

@@ -63,7 +63,7 @@ std::vector<double> nearestInView(const Scene& scene, const Camera& camera, doub
 }
 
 double nearPlane(const Scene& scene, double aspect) {
-  const double diagonal = std::max(glm::length(scene.bounds.extent()), 1e-6), usual = 5e-4 * diagonal;
+  const double diagonal = std::max(glm::length(scene.main().extent()), 1e-6), usual = 5e-4 * diagonal;
   double nearest = kNowhere;
   for (const Camera& camera : scene.cameras)
     for (const double z : nearestInView(scene, camera, aspect, usual)) nearest = std::min(nearest, z);

@@ -82,7 +82,7 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
                    const RenderSettings& settings)
     : settings_(settings),
       features_(analyse(scene)),
-      origin_(floatingOrigin(scene.bounds)),
+      origin_(floatingOrigin(scene.main())),
       sceneExposure_(scene.exposure),
       exposure_(settings.exposure.value_or(scene.exposure)),
       timer_(context.capabilities().softwareRenderer),
@@ -188,7 +188,7 @@ bool Renderer::follow(const gl::Context& context, gl::ProgramLibrary& programs, 
   if (!change.any()) return true;
   sceneExposure_ = scene.exposure;
   exposure_ = settings_.exposure.value_or(sceneExposure_);
-  if (!(analyse(scene) == features_) || floatingOrigin(scene.bounds) != origin_) return false;
+  if (!(analyse(scene) == features_) || floatingOrigin(scene.main()) != origin_) return false;
   const bool movesCamerasAlone = change.meshes.empty() && !change.anyLight() && !change.materials && !change.media;
   // Takes its time, in which frames of what is there may be drawn.
   if (geometry_ && !movesCamerasAlone && !geometry_->follow(change)) return false;
@@ -229,7 +229,7 @@ void Renderer::warnOfWhatIsCut() {
   warnings_.push_back(
       fmt::format("{} within {:.3g} of the camera: not drawn, as the scene is {:.3g} wide (technique "
                   "path draws all)",
-                  fmt::join(names, ", "), near_, glm::length(scene.bounds.extent())));
+                  fmt::join(names, ", "), near_, glm::length(scene.main().extent())));
   logWarning("{}", warnings_.back());
 }
 

@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "scene/curve.hpp"
+#include "scene/main_bounds.hpp"
 
 #include <fmt/ranges.h>
 #include <glm/gtc/matrix_transform.hpp>
@@ -177,6 +178,7 @@ void addMoves(Scene& scene, const std::vector<KeyFrameMove>& moves, const std::f
 }
 
 void finishMotion(Scene& scene) {
+  findMainBounds(scene);
   if (!scene.motion) return;
   SceneMotion& motion = *scene.motion;
   if (!motion.restVertices.empty()) {
@@ -194,12 +196,16 @@ void finishMotion(Scene& scene) {
   motion.restSpots = scene.spots;
   motion.restPoints = scene.points;
   motion.bounds = scene.bounds;
+  std::vector<SweptBounds> swept;
+  for (const Mesh& mesh : scene.meshes) swept.push_back({mesh.bounds, mesh.bounds});
   constexpr int kTimes = 64;
   if (!motion.meshes.empty())
     for (int k = 0; k <= kTimes; ++k) {
       poseMeshes(scene, motion.end * k / kTimes);
       motion.bounds.add(scene.bounds);
+      for (std::size_t m = 0; m < swept.size(); ++m) swept[m].swept.add(scene.meshes[m].bounds);
     }
+  scene.mainBounds = boundsWithoutFarMeshes(swept, scene.cameras);
   poseAt(scene, 0.0);
 }
 

@@ -32,6 +32,7 @@ Scene movedTo(const Scene& scene, const glm::dvec3& origin) {
   for (Vertex& vertex : moved.vertices) vertex.position = glm::vec3(glm::dvec3(vertex.position) - origin);
   for (Mesh& mesh : moved.meshes) move(mesh.bounds, origin);
   move(moved.bounds, origin);
+  if (moved.mainBounds) move(*moved.mainBounds, origin);
   for (SpotLight& light : moved.spots) light.position -= origin;
   for (PointLight& light : moved.points) light.position -= origin;
   for (Camera& camera : moved.cameras) camera.position -= origin;

@@ -199,7 +199,8 @@ struct Scene {
   std::optional<Environment> environment;  ///< seen behind the scene; lights it in the path tracer, in radiosity and
                                            ///< in the irradiance cache
   std::vector<Camera> cameras;  ///< never empty after loading: the first is the default view
-  Bounds bounds;
+  Bounds bounds;  ///< of everything, during the whole motion
+  std::optional<Bounds> mainBounds;  ///< without meshes that are far off and small (main_bounds.hpp), if it has such
   glm::dvec3 origin{0.0};  ///< taken off all positions, in double: places in files and options are places here + origin
   double metresPerUnit = 1.0;
   glm::vec3 background{0.0f};  ///< radiance visible where there is neither surface nor environment; it lights nothing
@@ -214,6 +215,12 @@ struct Scene {
   std::size_t droppedTriangles = 0;  ///< left out while loading: a position is not finite
 
   std::size_t triangleCount() const { return indices.size() / 3; }
+  const Bounds& main() const { return mainBounds ? *mainBounds : bounds; }
+  bool isMain(const glm::dvec3& place) const {
+    return !mainBounds || glm::clamp(place, mainBounds->min, mainBounds->max) == place;
+  }
+  /// The main bounds, or as large ones around a place that is far from them.
+  Bounds mainAround(const glm::dvec3& place) const;
 };
 
 /// Reads a scene: a scene JSON (ours; see scene_file.cpp for its keys) or any format that Assimp reads.

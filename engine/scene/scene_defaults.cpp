@@ -110,7 +110,7 @@ void setDefaultView(Scene& scene) {
   }
   // Cameras that animations would have turned, or that were read with the wrong handedness, may see nothing: then they
   // do not come first.
-  const bool blind = !scene.cameras.empty() && !seesAnything(scene.cameras.front(), scene.bounds);
+  const bool blind = !scene.cameras.empty() && !seesAnything(scene.cameras.front(), scene.main());
   if (blind)
     logWarning("{}: camera '{}' sees nothing of the scene; using the default view from outside", scene.file.string(),
                scene.cameras.front().name);
@@ -127,8 +127,8 @@ void useChosenView(Scene& scene) {
 
 void setDefaultExposure(Scene& scene, const Camera& camera) {
   if (!scene.defaultExposure) return;
-  const glm::bvec3 above = glm::greaterThan(camera.position, scene.bounds.min),
-                   below = glm::lessThan(camera.position, scene.bounds.max);
+  const glm::bvec3 above = glm::greaterThan(camera.position, scene.main().min),
+                   below = glm::lessThan(camera.position, scene.main().max);
   scene.exposure = glm::all(above) && glm::all(below) ? kExposureInside : kExposureOutside;
 }
 
@@ -140,9 +140,9 @@ void setDefaultSky(Scene& scene) {
 
 void setExposureForLamps(Scene& scene) {
   if (scene.defaultSun) return;
-  const double radius = 0.5 * glm::length(scene.bounds.extent());
+  const double radius = 0.5 * glm::length(scene.main().extent());
   const auto lamp = [&](const glm::dvec3& position, const glm::vec3& intensity) {
-    const double distance = std::max(glm::length(position - scene.bounds.centre()), radius);
+    const double distance = std::max(glm::length(position - scene.main().centre()), radius);
     return strongest(intensity) / (distance * distance);
   };
   double irradiance = scene.sun ? strongest(scene.sun->irradiance) : 0.0;

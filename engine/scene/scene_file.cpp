@@ -43,6 +43,7 @@
 #include "scene/clear_sky.hpp"
 #include "scene/curve.hpp"
 #include "scene/json_value.hpp"
+#include "scene/main_bounds.hpp"
 #include "scene/motion.hpp"
 #include "scene/original_scene_file.hpp"
 #include "scene/scene_media.hpp"
@@ -502,6 +503,7 @@ Scene loadSceneFile(const std::filesystem::path& file) {
     }
     scene.bounds = {};
     for (const Mesh& mesh : scene.meshes) scene.bounds.add(mesh.bounds);
+    findMainBounds(scene);
   }
   if (hasCameras) scene.cameras = json->camerasAt(scene, 0.0), replace(SceneMotion::Part::views);
   if (!keyFrames.empty()) setKeyFrames(scene, keyFrames, !hasCameras);

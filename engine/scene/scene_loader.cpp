@@ -7,6 +7,7 @@
 #include "base/log.hpp"
 #include "scene/json_value.hpp"
 #include "scene/model_import.hpp"
+#include "scene/main_bounds.hpp"
 #include "scene/motion.hpp"
 #include "scene/polygon_mesh.hpp"
 #include "scene/scene_file.hpp"
@@ -208,6 +209,7 @@ ModelViews readSurfaces(Scene& scene, const fs::path& file) {
   if (scene.indices.empty() && scene.droppedTriangles > 0)
     throwBadInput("{}: nothing to draw: none of its {} triangles has finite positions (up to 3.4e38)", file.string(),
                   scene.droppedTriangles);
+  findMainBounds(scene);
   if (scene.indices.empty()) throwBadInput("{}: nothing to draw: it has no triangles", file.string());
   if (scene.degenerateTriangles == scene.triangleCount())
     throwBadInput("{}: nothing to draw: all triangles have zero area", file.string());
@@ -265,6 +267,7 @@ void addModel(Scene& scene, const fs::path& file) {
   append(scene.materials, other.materials);
   append(scene.textures, other.textures);
   append(scene.media, other.media);
+  findMainBounds(scene);
   scene.degenerateTriangles += other.degenerateTriangles;
   scene.droppedTriangles += other.droppedTriangles;
 }

@@ -67,7 +67,7 @@ Surroundings lookAround(const Scene& scene) {
   if (scene.triangleCount() > kMostTriangles) return seen;
   for (int i = 0; i < kRays; ++i) {
     const glm::dvec3 ray = spread(i, false);
-    const Hit hit = firstHit(scene, scene.bounds.centre(), ray);
+    const Hit hit = firstHit(scene, scene.main().centre(), ray);
     if (!std::isfinite(hit.distance)) seen.opening += ray;
     else if (hit.ofFront) ++seen.fronts;
   }
@@ -88,12 +88,13 @@ std::optional<glm::dvec3> openingOf(const Scene& scene) {
 
 /// Moves a camera so that all vertices fill that part of the picture's height or width, and are in its middle.
 void frame(Camera& camera, const Scene& scene, double fill) {
-  const glm::dvec3 right = glm::normalize(glm::cross(camera.direction, camera.up)), centre = scene.bounds.centre();
+  const glm::dvec3 right = glm::normalize(glm::cross(camera.direction, camera.up)), centre = scene.main().centre();
   const glm::dvec2 slope = fill * std::tan(0.5 * camera.verticalFov) * glm::dvec2(kWidthOverHeight, 1.0);
   // A vertex at (x, z) from the centre is within the picture's right edge for a camera at (c, -d) if
   // x - c <= slope (z + d), and so on: each edge has one vertex that is farthest beyond it.
   glm::dvec2 beyond(-1e300), before(-1e300);
   for (const Vertex& vertex : scene.vertices) {
+    if (!scene.isMain(glm::dvec3(vertex.position))) continue;
     const glm::dvec3 p = glm::dvec3(vertex.position) - centre;
     const glm::dvec2 at(glm::dot(p, right), glm::dot(p, camera.up));
     const double z = glm::dot(p, camera.direction);
@@ -155,7 +156,7 @@ bool glowsOutwards(const Scene& scene) {
     }
   }
   int met = 0;
-  const double nudge = 1e-5 * glm::length(scene.bounds.extent());
+  const double nudge = 1e-5 * glm::length(scene.main().extent());
   for (int i = 0; i < kRays; ++i) {
     const double at = areas.back() * ((i * 37 % kRays) + 0.5) / kRays;  // another order than that of directions
     const auto found = static_cast<std::size_t>(std::ranges::lower_bound(areas, at) - areas.begin());
@@ -171,7 +172,7 @@ bool glowsOutwards(const Scene& scene) {
 }
 
 void addFloor(Scene& scene) {
-  const Bounds& all = scene.motion ? scene.motion->bounds : scene.bounds;
+  const Bounds& all = scene.mainBounds ? *scene.mainBounds : scene.motion ? scene.motion->bounds : scene.bounds;
   const glm::dvec3 extent = all.extent(), centre = all.centre();
   const double radius = kFloorRadius * 0.5 * std::max({std::hypot(extent.x, extent.z), 0.2 * extent.y, 1e-9});
   // Slightly below, so that a model's own floor stays visible.

@@ -212,7 +212,7 @@ TEST_F(LightsGl, TotalFluxOfASpotIsTheAlbedoTimesItsOwn) {
       static_cast<double>(kAlbedo) * 3.0 * 2.0 * kPi * (1.0 - 0.5 * (std::cos(0.4) + std::cos(0.8)));
   for (const int size : {64, 128, 256, 512}) {
     ReflectiveShadowMap rsm(programs(), gpuScene, {size, ReflectiveShadowMap::Light::spot});
-    const ReflectiveShadowMap::Outputs outputs = rsm.record(gpuScene, lightViews(light, scene.bounds));
+    const ReflectiveShadowMap::Outputs outputs = rsm.record(gpuScene, lightViews(light, scene));
     const double ratio = totals(outputs).flux / expected;
     EXPECT_NEAR(ratio, 1.0, 0.01) << size;
     EXPECT_GE(outputs.largestFlux, expected / static_cast<double>(kAlbedo)) << size;
@@ -229,7 +229,7 @@ TEST_F(LightsGl, TotalFluxAndAreaOfAnOmnidirectionalLightAreTheRooms) {
   const GpuScene gpuScene(scene, analyse(scene), capabilities());
   for (const int size : {32, 64, 256, 512}) {
     ReflectiveShadowMap rsm(programs(), gpuScene, {size, ReflectiveShadowMap::Light::point});
-    const ReflectiveShadowMap::Outputs outputs = rsm.record(gpuScene, lightViews(light, scene.bounds));
+    const ReflectiveShadowMap::Outputs outputs = rsm.record(gpuScene, lightViews(light, scene));
     const Totals sum = totals(outputs);
     EXPECT_GE(outputs.largestFlux * (1.0 + 1e-6), sum.flux / static_cast<double>(kAlbedo)) << size;
     EXPECT_NEAR(outputs.largestFlux / (4.0 * kPi * 3.0), 1.0, 0.01) << size;
@@ -265,7 +265,7 @@ TEST_F(LightsGl, AnOmnidirectionalLightsFluxIsTexturedAllOverATriangle) {
   ReflectiveShadowMap rsm(programs(), gpuScene, {256, ReflectiveShadowMap::Light::point});
   const double solidAngle = 4.0 * std::asin(0.81 / 1.81);  // of a square pyramid
   const double expected = static_cast<double>(kAlbedo) * 3.0 * solidAngle / 4.0;
-  EXPECT_NEAR(totals(rsm.record(gpuScene, lightViews(light, scene.bounds))).flux / expected, 1.0, 0.01);
+  EXPECT_NEAR(totals(rsm.record(gpuScene, lightViews(light, scene))).flux / expected, 1.0, 0.01);
 }
 
 TEST_F(LightsGl, TheSunsFluxCountsProjectedAreaAndItsSurfelsTrueArea) {
@@ -297,8 +297,8 @@ TEST_F(LightsGl, TheVolumeAddsLightsUp) {
   const GpuScene gpuScene(scene, analyse(scene), capabilities());
   ReflectiveShadowMap spotMap(programs(), gpuScene, {64, ReflectiveShadowMap::Light::spot});
   ReflectiveShadowMap pointMap(programs(), gpuScene, {32, ReflectiveShadowMap::Light::point});
-  const auto a = spotMap.record(gpuScene, lightViews(spot, scene.bounds));
-  const auto b = pointMap.record(gpuScene, lightViews(point, scene.bounds));
+  const auto a = spotMap.record(gpuScene, lightViews(spot, scene));
+  const auto b = pointMap.record(gpuScene, lightViews(point, scene));
   LpvSettings s;
   s.cascades.cells = 8;
   s.cascades.cascades = 2;
@@ -566,8 +566,8 @@ TEST_F(LightsGl, FixedPointSumsOfAllLightsDoNotOverflow) {
       maps.emplace_back(programs(), gpuScene, ReflectiveShadowMap::Settings{size, ReflectiveShadowMap::Light::point});
     maps.emplace_back(programs(), gpuScene, ReflectiveShadowMap::Settings{size, ReflectiveShadowMap::Light::spot});
     for (std::size_t i = 0; i < maps.size(); ++i) {
-      outputs.push_back(maps[i].record(
-          gpuScene, i < 2 ? lightViews(scene.points[i], scene.bounds) : lightViews(scene.spots[0], scene.bounds)));
+      outputs.push_back(
+          maps[i].record(gpuScene, i < 2 ? lightViews(scene.points[i], scene) : lightViews(scene.spots[0], scene)));
       flux += totals(outputs.back()).flux;
       EXPECT_GE(outputs.back().largestFlux * (1.0 + 1e-6), totals(outputs.back()).flux) << size;
     }

@@ -210,7 +210,7 @@ TEST_F(ShadingValues, ShadowsAreFilteredByATentOfThreeTexels) {
     SceneBuilder builder = plateOverFloor();
     const glm::dvec3 lamp{0.3, 5.0, 0.2}, axis = glm::normalize(glm::dvec3(-0.05, -1.0, 0.03));
     builder.scene().spots.push_back({lamp, axis, glm::vec3(50.0f), 0.79, 0.8});
-    const LightViews views = lightViews(builder.scene().spots[0], builder.scene().bounds);
+    const LightViews views = lightViews(builder.scene().spots[0], builder.scene());
     const auto falloff = [&](const glm::dvec3& p) {
       const glm::dvec3 to = lamp - p;
       const double d = glm::length(to),
@@ -229,7 +229,7 @@ TEST_F(ShadingValues, ShadowsAreFilteredByATentOfThreeTexels) {
     SceneBuilder builder = plateOverFloor();
     const glm::dvec3 lamp{0.3, 5.0, 0.2};
     builder.scene().points.push_back({lamp, glm::vec3(50.0f)});
-    const LightViews views = lightViews(builder.scene().points[0], builder.scene().bounds);
+    const LightViews views = lightViews(builder.scene().points[0], builder.scene());
     constexpr int kDown = 3;  // of OpenGL's faces: -y
     const double offset = 1.5 * views.texelWidth(kMap) * lamp.y;
     expectFilter(

@@ -22,6 +22,13 @@ namespace {
 using test::badInputMessage;
 using test::TempFolder;
 
+Scene unitScene() {
+  Scene scene;
+  scene.bounds.add(glm::dvec3(-1.0));
+  scene.bounds.add(glm::dvec3(1.0));
+  return scene;
+}
+
 struct LightFolder : TempFolder {
   LightFolder() { write("box.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"); }
   Scene load(const std::string& keys) const {
@@ -40,14 +47,12 @@ TEST(SceneLights, TheDefaultExposureGoesWithTheDefaultSun) {
 }
 
 TEST(LightViews, LargestSolidAngleBoundsTheTexelsSum) {
-  Bounds bounds;
-  bounds.add(glm::dvec3(-1.0));
-  bounds.add(glm::dvec3(1.0));
-  std::vector<LightViews> all{lightViews(PointLight{}, bounds)};
+  const Scene scene = unitScene();
+  std::vector<LightViews> all{lightViews(PointLight{}, scene)};
   for (const double degrees : {1.0, 20.0, 45.0, 70.0, 80.0}) {
     SpotLight spot;
     spot.outerAngle = degrees * kDegree;
-    all.push_back(lightViews(spot, bounds));
+    all.push_back(lightViews(spot, scene));
   }
   for (const LightViews& light : all)
     for (const int size : {1, 2, 3, 7, 64, 512}) {
@@ -232,15 +237,8 @@ TEST(SceneLights, NeedsAreRaisedByLampsThatShine) {
   EXPECT_TRUE(!analyse(scene).spotLights && analyse(scene).pointLights && analyse(scene).indirect);
 }
 
-Bounds unitBounds() {
-  Bounds bounds;
-  bounds.add(glm::dvec3(-1.0));
-  bounds.add(glm::dvec3(1.0));
-  return bounds;
-}
-
 TEST(LightViewsTest, SixFacesSeeTheSphereOnceInCubeMapOrder) {
-  const LightViews views = lightViews(PointLight{glm::dvec3(0.3, -0.2, 0.1), glm::vec3(1.0f)}, unitBounds());
+  const LightViews views = lightViews(PointLight{glm::dvec3(0.3, -0.2, 0.1), glm::vec3(1.0f)}, unitScene());
   ASSERT_EQ(views.clipFromWorld.size(), 6u);
   for (int i = 0; i < 500; ++i) {
     const double z = 1.0 - 2.0 * (i + 0.5) / 500.0, angle = 2.399963 * i;
@@ -260,7 +258,7 @@ TEST(LightViewsTest, SixFacesSeeTheSphereOnceInCubeMapOrder) {
 TEST(LightViewsTest, TypicalIrradianceIsTheLargestAndNeverZero) {
   Scene scene;
   EXPECT_EQ(typicalIrradiance(scene), 1.0f);
-  scene.bounds = unitBounds();
+  scene.bounds = unitScene().bounds;
   const double r2 = 12.0 / 16.0;  // (diagonal / 4)^2
   scene.points = {PointLight{{}, glm::vec3(0.0f, 3.0f, 1.0f)}};
   EXPECT_NEAR(typicalIrradiance(scene), 3.0 / r2, 1e-6);

@@ -1,0 +1,82 @@
+#include "scene/main_bounds.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace lucerna {
+
+namespace {
+
+double diagonalOf(const Bounds& box) { return box.empty() ? 0.0 : glm::length(box.extent()); }
+
+double farthestFrom(const glm::dvec3& point, const Bounds& box) {
+  return glm::length(glm::max(glm::abs(box.min - point), glm::abs(box.max - point)));
+}
+
+double weightOf(const SweptBounds& mesh) { return diagonalOf(mesh.own) * diagonalOf(mesh.own); }
+
+/// Coordinate by coordinate.
+glm::dvec3 weightedMedian(const std::vector<SweptBounds>& meshes) {
+  glm::dvec3 median(0.0);
+  std::vector<std::pair<double, double>> places;  // with weights
+  for (int axis = 0; axis < 3; ++axis) {
+    places.clear();
+    double left = 0.0;
+    for (const SweptBounds& mesh : meshes) {
+      places.emplace_back(mesh.own.centre()[axis], weightOf(mesh));
+      left += 0.5 * weightOf(mesh);
+    }
+    std::ranges::sort(places);
+    auto place = places.begin();
+    for (left -= place->second; left > 0.0 && place + 1 != places.end(); left -= place->second) ++place;
+    median[axis] = place->first;
+  }
+  return median;
+}
+
+}  // namespace
+
+std::optional<Bounds> boundsWithoutFarMeshes(const std::vector<SweptBounds>& all, const std::vector<Camera>& cameras) {
+  constexpr double kSmall = 0.01;
+  std::vector<SweptBounds> left;
+  std::ranges::copy_if(all, std::back_inserter(left), [](const SweptBounds& mesh) { return !mesh.own.empty(); });
+  if (left.size() < 2) return std::nullopt;
+  const glm::dvec3 median = weightedMedian(left);
+  std::ranges::stable_sort(left, {}, [&](const SweptBounds& mesh) { return farthestFrom(median, mesh.swept); });
+  Bounds main;
+  const double half = 0.5 * std::accumulate(left.begin(), left.end(), 0.0,
+                                            [](double sum, const SweptBounds& mesh) { return sum + weightOf(mesh); });
+  double weight = 0.0;
+  const auto isMain = [&](const SweptBounds& mesh) {
+    const double distance = main.empty() ? 0.0 : farthestFrom(main.centre(), mesh.swept), size = diagonalOf(mesh.own);
+    return weight < half || distance <= kFarOff * diagonalOf(main) || size >= kSmall * distance ||
+           std::ranges::any_of(cameras, [&](const Camera& camera) {
+             return farthestFrom(camera.position, mesh.swept) < kFarOff * size;
+           });
+  };
+  // Each mesh that is added may bring others near.
+  for (bool grows = true; grows;) {
+    grows = false;
+    std::erase_if(left, [&](const SweptBounds& mesh) {
+      if (!isMain(mesh)) return false;
+      main.add(mesh.swept);
+      weight += weightOf(mesh);
+      return grows = true;
+    });
+  }
+  return left.empty() ? std::nullopt : std::optional(main);
+}
+
+void findMainBounds(Scene& scene) {
+  std::vector<SweptBounds> meshes;
+  for (const Mesh& mesh : scene.meshes) meshes.push_back({mesh.bounds, mesh.bounds});
+  scene.mainBounds = boundsWithoutFarMeshes(meshes, scene.cameras);
+}
+
+Bounds Scene::mainAround(const glm::dvec3& place) const {
+  const Bounds& box = main();
+  if (!mainBounds || glm::distance(place, box.centre()) <= kFarOff * diagonalOf(box)) return box;
+  return {place - 0.5 * box.extent(), place + 0.5 * box.extent()};
+}
+
+}  // namespace lucerna
