@@ -24,6 +24,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -282,13 +283,17 @@ std::string number(double value) { return std::isnan(value) ? "-" : fmt::format(
 
 /// One line a technique.
 std::string tableOf(const std::vector<Row>& rows) {
-  std::string text =
-      "technique                    mean error  worst     lag, frames  ghosts    flicker  samples  ms a frame, "
-      "median (quartiles)\n";
+  std::size_t longest = std::strlen("technique");
+  for (const Row& row : rows) longest = std::max(longest, row.name.size());
+  std::string text = fmt::format(
+      "{:<{}}  mean error  worst     lag, frames  ghosts    flicker  samples  ms a frame, "
+      "median (quartiles)\n",
+      "technique", longest);
   for (const Row& row : rows)
-    text += fmt::format("{:<28} {:<11} {:<9} {:<12} {:<9} {:<8} {:<8} {:.1f} ({:.1f} to {:.1f})\n", row.name,
+    text += fmt::format("{:<{}}  {:<11} {:<9} {:<12} {:<9} {:<8} {:<8} {:.1f} ({:.1f} to {:.1f})\n", row.name, longest,
                         percent(row.errors.mean), percent(row.errors.worst), number(row.errors.lag),
-                        percent(row.errors.ghosts), number(row.errors.flicker), median(row.samples), median(row.ms),
+                        percent(row.errors.ghosts), number(row.errors.flicker),
+                        std::isnan(row.samples.front()) ? "-" : fmt::format("{}", median(row.samples)), median(row.ms),
                         percentile(row.ms, 0.25), percentile(row.ms, 0.75));
   return text;
 }
@@ -309,10 +314,12 @@ std::string pageOf(const DynamicOptions& options, const std::vector<Moment>& mom
       for (std::size_t k = 0; k < errors->l2.size(); ++k)
         points +=
             fmt::format("{:.1f},{:.1f} ", 1000.0 * (static_cast<double>(k) + 0.5) / static_cast<double>(moments.size()),
-                        100.0 - 95.0 * std::min(errors->l2[k] / most, 1.0));
+                        100.0 - 100.0 * std::min(errors->l2[k] / most, 1.0));
       curve = fmt::format(
-          "<svg viewBox='0 0 1000 100' preserveAspectRatio='none'><polyline points='{}'/><line y1='0' y2='100'/></svg>",
-          points);
+          "<div class='curve'><b>{}</b><i>0</i><svg viewBox='0 0 1000 100' preserveAspectRatio='none'>"
+          "<polyline points='{}'/><line y1='0' y2='100'/></svg></div>"
+          "<div class='times'><span>{:.6g} s</span><span>{:.6g} s</span></div>",
+          percent(most), points, moments.front().seconds, moments.back().seconds);
     }
     figures += fmt::format("<h2>{}</h2><img class='large' data-name='{}' alt='{}'><div class='strip'>{}</div>{}\n",
                            name, fileNameOf(name), name, strip, curve);
@@ -323,9 +330,12 @@ std::string pageOf(const DynamicOptions& options, const std::vector<Moment>& mom
   for (const Moment& moment : moments) times += fmt::format("{}{:.6g}", times.empty() ? "" : ",", moment.seconds);
   return fmt::format(
       "<!doctype html><html lang='en'><meta charset='utf-8'><title>{0}, moment by moment</title><style>"
-      "body{{font:15px sans-serif;max-width:62em;margin:1em auto;padding:0 1em}} pre{{overflow-x:auto}}"
+      "body{{font:15px sans-serif;max-width:62em;margin:1em auto;padding:0 1em}} pre{{overflow-x:auto;font-size:11px}}"
       ".strip{{display:flex}} .strip img{{flex:1;min-width:0}} .strip img.now{{outline:2px solid #06c}}"
       ".large{{width:32em;max-width:100%;image-rendering:pixelated;display:block}}"
+      ".curve{{position:relative;font-size:12px}} .curve b,.curve i{{position:absolute;left:0;padding:0 "
+      "4px;font:inherit;background:#f2f2f2}} "
+      ".curve i{{bottom:8px}} .times{{display:flex;justify-content:space-between;font-size:12px}} "
       "svg{{width:100%;height:6em;background:#f2f2f2}} "
       "polyline{{fill:none;stroke:#c30;vector-effect:non-scaling-stroke}}"
       "svg line{{stroke:#06c;vector-effect:non-scaling-stroke}} "

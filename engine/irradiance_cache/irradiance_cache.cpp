@@ -164,11 +164,11 @@ void IrradianceCache::forget() {
 }
 
 bool IrradianceCache::follow(const Scene& scene, const std::vector<Bounds>& moved, bool lampsAlone) {
-  const bool isSame = settings_.transport == CacheTransport::rays && rays_ == rayFlags(settings_.rays);
-  if (!isSame) return false;
+  // What is gathered holds where surfaces, emission and sky stay: trees and light of bounces follow the lights' maps.
+  if (gather_ ? !(lampsAlone && moved.empty()) : rays_ != rayFlags(settings_.rays)) return false;
   if (!keepFollowed_) {
     const bool lightsAll = cached_ && path_.minScatterings <= 1;
-    if (settings_.keepsHits && lightsAll && lampsOf(scene) <= CACHE_MOST_LAMPS) makeKept();
+    if (settings_.keepsHits && lightsAll && !gather_ && lampsOf(scene) <= CACHE_MOST_LAMPS) makeKept();
     keepFollowed_ =
         &programs_->loadCompute("cache keep records", "irradiance_cache/keep.comp",
                                 gl::with(lookupFlags(settings_), {{"FOLLOWS", 1}, {"KEEPS", kept_ != nullptr}}));
@@ -464,7 +464,7 @@ IrradianceCache::Found IrradianceCache::findRecords(const Inputs& inputs) {
   const bool settles = !followed_ && stillSettles();
   if (followed_) {
     beginToFollow(inputs.fades);
-    settles_ = cached_ && !cascades_.empty();
+    settles_ = cached_ && !gather_ && !cascades_.empty();
     followedIn_ = nextFrame();
   }
   followed_ = followed_ || settles;

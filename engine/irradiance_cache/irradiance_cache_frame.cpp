@@ -96,6 +96,7 @@ bool IrradianceCacheFrame::follow(const SceneChange& change) {
   }
   const bool lampsAlone = !change.materials && !change.environment && !change.media;
   if (!cache_.follow(parts_.scene, moved, lampsAlone)) return false;
+  if (maps_ && !maps_->follow()) return false;
   makeReflections();
   settled_ = false;
   return true;

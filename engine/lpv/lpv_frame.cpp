@@ -114,6 +114,11 @@ std::vector<ReflectiveShadowMap::Outputs> LpvFrame::recordCameraMap(gl::TimeQuer
   return {cameraMap_->record(parts_.drawn(), lightViews(eye, parts_.drawn().scene()))};
 }
 
+bool LpvFrame::follow(const SceneChange&) {
+  forget();
+  return !shafts_ && (!maps_ || maps_->follow());  // shafts know the sun's maps
+}
+
 bool LpvFrame::record(gl::TimeQuery& timer, const FrameView& view, FrameEffort) {
   if (shafts_) shafts_->bind();
   if (!volume_) return false;

@@ -28,6 +28,7 @@ class LpvFrame final : public FrameTechnique {
 
   std::string surfaceShader() const override;
   gl::ShaderFlags surfaceFlags() const override;
+  bool follow(const SceneChange& change) override;
   bool record(gl::TimeQuery& timer, const FrameView& view, FrameEffort effort) override;
   void bindForShading() const override;
   void addToPicture(gl::TimeQuery& timer, const FrameView& view) override;

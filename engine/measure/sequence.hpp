@@ -2,10 +2,15 @@
 // shows. Below P_k is picture k, R_k its reference with noise of variance s_k^2 a pixel and channel; sums are over
 // pixels and channels of all pictures. The references' noise is taken off each sum, so results are means over noise.
 //
+// A technique that lacks light has pictures that are too dark in all moments, which is neither lag nor ghosts. So both
+// allow each channel of each square of 16x16 pixels a gain g that is the same in all moments. (Where light grows and
+// fades by the same factor in a square, that is exact, whatever each pixel lacks.)
+//
 //   lag      the time by which the references would have to be late to explain the pictures best: the shift that makes
-//            sum |P(t) - R(t - lag)|^2 least, with R linear between moments, from -1 to 4 moments
+//            sum |P(t) - g R(t - lag)|^2 least, with the best g, and R linear between moments; from -1 to 4 moments
 //   ghosts   how much of what has just changed the pictures still show: where references differ from the moment before,
-//            sum (P_k - R_k)(R_k-1 - R_k) / sum (R_k-1 - R_k)^2. 0: none; 1: the picture of the moment before
+//            sum g (P_k - g R_k)(R_k-1 - R_k) / sum g^2 (R_k-1 - R_k)^2, g for that lag. 0: none; 1: the picture of the
+//            moment before
 //   flicker  sqrt(sum |P_k+1 - 2 P_k + P_k-1|^2 / sum |R_k+1 - 2 R_k + R_k-1|^2): 1 is as steady as the references
 #pragma once
 

@@ -115,7 +115,8 @@ Renderer::Renderer(const gl::Context& context, gl::ProgramLibrary& programs, con
 }
 
 // What depends on the lights and on where surfaces stand; programs are those of the library.
-void Renderer::makeLights(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene) {
+void Renderer::makeLights(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
+                          const SceneChange& change) {
   const TechniqueEntry& technique = techniqueNamed(settings_.technique);
   const Scene& drawn = gpuScene_->scene();
   if (std::exchange(surfacesAreNew_, false)) {
@@ -125,6 +126,7 @@ void Renderer::makeLights(const gl::Context& context, gl::ProgramLibrary& progra
   if (scene.sun) sunFrustum_ = fitSunFrustum(drawn, scene.sun->direction);
   if (!lampShadowsMade_) chooseLamps(programs);
   if (showsDirect()) makeShadowMaps(programs);
+  if (technique_ && !geometry_ && !technique_->follow(change)) technique_.reset();
   if (!technique_ && technique.drawsSurfaces && technique.isNeeded(settings_, features_))
     technique_ = technique.make(parts(context, programs, scene));
   if (EnvironmentView::isNeeded(features_) && settings_.component != Component::indirect)
@@ -205,12 +207,11 @@ bool Renderer::follow(const gl::Context& context, gl::ProgramLibrary& programs, 
   if (geometry_) gpuScene_->replaceMeshes();
   else gpuScene_->update(change.meshes);
   traced_.update(change.meshes);
-  if (technique_ && !geometry_ && !technique_->follow(change)) technique_.reset();
   shadowRays_.reset();
   if (!change.meshes.empty() || change.lamps) lampShadowsMade_ = false;
   if (!change.meshes.empty() || change.sun) sunShadowMade_ = false;
   environmentView_.reset();
-  makeLights(context, programs, scene);
+  makeLights(context, programs, scene, change);
   return true;
 }
 

@@ -109,7 +109,8 @@ class Renderer {
  private:
   const Scene& aboutOrigin(const Scene& scene);  ///< makes moved_ if it must be moved
   FrameParts parts(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene);
-  void makeLights(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene);
+  void makeLights(const gl::Context& context, gl::ProgramLibrary& programs, const Scene& scene,
+                  const SceneChange& change = {});
   glm::vec3 shownSky(const Scene& scene) const;
   void chooseLamps(gl::ProgramLibrary& programs);
   void leaveCoarseMapsToRays();

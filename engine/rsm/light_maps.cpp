@@ -4,18 +4,31 @@
 
 namespace lucerna {
 
-LightMaps::LightMaps(const FrameParts& parts, bool albedo) : parts_(parts) {
+namespace {
+
+std::vector<ReflectiveShadowMap::Light> lightsOf(const FrameParts& parts) {
   using Light = ReflectiveShadowMap::Light;
-  const auto add = [&](Light light) {
+  std::vector<Light> lights(parts.features.directionalLight ? 1 : 0, Light::sun);
+  lights.insert(lights.end(), parts.spots.size(), Light::spot);
+  lights.insert(lights.end(), parts.points.size(), Light::point);
+  return lights;
+}
+
+}  // namespace
+
+LightMaps::LightMaps(const FrameParts& parts, bool albedo) : parts_(parts) {
+  for (const ReflectiveShadowMap::Light light : lightsOf(parts)) {
     auto settings = parts.settings.of<ReflectiveShadowMap::Settings>();
     settings.light = light;
     settings.albedo = albedo;
-    if (light == Light::point) settings.size = std::max(settings.size / 2, 1);
+    if (light == ReflectiveShadowMap::Light::point) settings.size = std::max(settings.size / 2, 1);
     maps_.emplace_back(parts.programs, parts.drawn(), settings);
-  };
-  if (parts.features.directionalLight) add(Light::sun);
-  for (std::size_t i = 0; i < parts.spots.size(); ++i) add(Light::spot);
-  for (std::size_t i = 0; i < parts.points.size(); ++i) add(Light::point);
+  }
+}
+
+bool LightMaps::follow() {
+  forget();
+  return std::ranges::equal(maps_, lightsOf(parts_), {}, &ReflectiveShadowMap::light);
 }
 
 const std::vector<ReflectiveShadowMap::Outputs>& LightMaps::record(gl::TimeQuery& timer) {

@@ -1,5 +1,5 @@
-// The reflective shadow maps of the lights whose reflected light a technique needs. They do not depend on the camera,
-// and lights and geometry stand still, so they are drawn once (with frame.reuse=off in each frame).
+// The reflective shadow maps of the lights whose reflected light a technique needs. They do not depend on the camera.
+// While lights and geometry stand still they are drawn once (with frame.reuse=off in each frame).
 #pragma once
 
 #include "gl/time_query.hpp"
@@ -20,6 +20,8 @@ class LightMaps {
   const std::vector<ReflectiveShadowMap::Outputs>& record(gl::TimeQuery& timer);
   const std::vector<ReflectiveShadowMap::Outputs>& outputs() const { return outputs_; }
   bool willBeDrawn() const { return !(parts_.settings.reuse && made_); }
+  /// Lights or geometry have changed. False: other maps are needed, since a lamp has left the scene, say.
+  bool follow();
   void forget() { made_ = false; }
   std::size_t count() const { return maps_.size(); }
   void addStagePictures(std::vector<StagePicture>& pictures) const;

@@ -18,6 +18,7 @@ class RsmFrame final : public FrameTechnique {
   std::string surfaceShader() const override { return "rsm/surface.frag"; }
   gl::ShaderFlags surfaceFlags() const override { return {{"SHOW_REFUSED", gather_.settings().showRefused}}; }
   void resize() override;
+  bool follow(const SceneChange&) override { return maps_.follow(); }
 
   /// Also draws depth.
   bool record(gl::TimeQuery& timer, const FrameView& view, FrameEffort effort) override;

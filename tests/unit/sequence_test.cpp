@@ -79,6 +79,32 @@ TEST_F(Sequence, GhostsAreTheShareOfThePictureBefore) {
     }
 }
 
+// A lamp that grows dim over a few moments, drawn without the light of further bounces: in each pixel another share.
+TEST_F(Sequence, LightThatIsMissingInAllMomentsIsNoLag) {
+  const auto lit = [](double moment) {
+    Image image = bar(3);
+    const auto strength = static_cast<float>(1.0 - 0.9 / (1.0 + std::exp(8.0 - moment)));
+    for (glm::vec3& p : image.pixels) p *= strength;
+    return image;
+  };
+  const auto lacking = [&](double moment) {
+    Image image = lit(moment);
+    for (int x = 0; x < kWidth; ++x)
+      for (int y = 0; y < kHeight; ++y) image.at(x, y) *= x % 4 == 0 ? 0.0f : 0.3f + 0.01f * static_cast<float>(x);
+    return image;
+  };
+  for (const float sigma : {0.0f, 0.02f}) {
+    std::vector<Reference> right = references(sigma);
+    for (int k = 0; k < kMoments; ++k) right[static_cast<std::size_t>(k)].mean = noisy(lit(k), sigma);
+    for (const double lag : {0.0, 1.0}) {
+      const SequenceErrors e = sequenceErrors(pictures([&](int k) { return lacking(k - lag); }), right);
+      EXPECT_GT(e.mean, 0.4);
+      EXPECT_NEAR(e.lag, lag, 0.051) << sigma;
+      EXPECT_NEAR(e.ghosts, lag, 0.06) << sigma;
+    }
+  }
+}
+
 TEST_F(Sequence, FlickerIsWhatTheReferencesLack) {
   const std::vector<Reference> still = references();
   const double own = sequenceErrors(pictures(bar), still).flicker;
