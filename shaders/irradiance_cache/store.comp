@@ -72,7 +72,7 @@ float brightestAround(ivec4 cell) {
 // on a ceiling at the edge of a lamp that hangs under it, say. It shows at most kMuch times the brightest of those
 // around it that are not in such a place.
 float shareOfItsCell(CacheRecord record, vec3 target) {
-  const float kMuch = 2.0;
+  const float kMuch = 1.25;  // 1: the foot of a lit wall is darker; 2: a lamp that hangs under a ceiling has a glow
   if ((record.state & CACHE_NARROW) == 0u) return 1.0;
   float around = brightestAround(record.cell), brightest = largestOf(target);
   return around >= 0.0 && brightest > kMuch * around ? kMuch * around / brightest : 1.0;
