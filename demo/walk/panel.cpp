@@ -24,6 +24,7 @@
 #include <array>
 #include <cfloat>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -100,13 +101,15 @@ void frameScene(WalkState& s) {
 /// The time of a scene that moves.
 void showTime(Ui& ui, WalkState& s) {
   TimeState& time = s.time;
-  if (button(ui, time.held ? "let go on" : "hold")) time.held = !time.held;
+  const auto hideNotice = [&] { s.messageAge = std::numeric_limits<double>::max(); };  // of another time
+  if (button(ui, time.held ? "let go on" : "hold")) time.held = !time.held, hideNotice();
   ImGui::SameLine();
   checkbox(ui, "loop time", time.loops);
   float seconds = static_cast<float>(time.seconds), speed = static_cast<float>(time.speed);
   if (slider(ui, "scene time", seconds, 0.0f, static_cast<float>(s.scene->motion->end), "%.2f s")) {
     time.seconds = static_cast<double>(seconds);
     time.held = true;
+    hideNotice();
   }
   if (slider(ui, "time speed", speed, 0.0625f, 16.0f, "%.3g x", true)) time.speed = static_cast<double>(speed);
 }

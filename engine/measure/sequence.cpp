@@ -37,49 +37,84 @@ std::size_t squareOf(const Image& image, std::size_t pixel, int channel) {
   return 3 * (pixel / width / kSide * across + pixel % width / kSide) + static_cast<std::size_t>(channel);
 }
 
-std::size_t squares(const Image& image) { return squareOf(image, image.pixels.size() - 1, 2) + 1; }
+/// Sums of pictures P and references R, which are late by some moments, over moments and pixels.
+struct Sums {
+  double pp = 0.0, pr = 0.0, rr = 0.0;  ///< rr: less R's noise
+  double noise = 0.0, noisePR2 = 0.0;  ///< of R^2; of the square of pr
 
-/// Pictures explained by references that are late by some moments, each square and channel with its best gain.
-struct Fit {
-  double misfit = 0.0;  ///< sum |P - g R|^2 over the pictures that have a reference at each shift
-  std::vector<double> gains;  ///< by squareOf; 1 where references are dark or have noise alone
+  /// Adds the moments of [first, last] to of(pixel, channel).
+  template <class Of>
+  static void add(std::span<const Image> pictures, std::span<const Reference> references, double late, int first,
+                  int last, const Of& of) {
+    const auto count = static_cast<int>(pictures.size());
+    for (int k = first; k <= last; ++k) {
+      const double place = std::clamp(k - late, 0.0, static_cast<double>(count - 1));
+      const auto a = static_cast<std::size_t>(std::min(static_cast<int>(place), count - 2));
+      const double u = place - static_cast<double>(a);
+      const Image& picture = pictures[static_cast<std::size_t>(k)];
+      for (std::size_t i = 0; i < picture.pixels.size(); ++i)
+        for (int c = 0; c < 3; ++c) {
+          Sums& sums = of(i, c);
+          const double p = at(picture, i, c),
+                       r = (1.0 - u) * at(references[a].mean, i, c) + u * at(references[a + 1].mean, i, c),
+                       sa = (1.0 - u) * at(references[a].standardError, i, c),
+                       sb = u * at(references[a + 1].standardError, i, c), s2 = sa * sa + sb * sb;
+          sums.pp += p * p;
+          sums.pr += p * r;
+          sums.rr += r * r - s2;
+          sums.noise += s2;
+          sums.noisePR2 += p * p * s2;
+        }
+    }
+  }
+  bool isKnown() const { return rr > noise && rr > 0.0; }
+  double gain() const { return isKnown() ? pr / rr : 1.0; }
+  /// sum |P - g R|^2 with the best g; the square of pr has the mean of P^2 s^2 of noise.
+  double misfit() const { return isKnown() ? pp - (pr * pr - noisePR2) / rr : 0.0; }
 };
 
-// g = PR / RR for the sums PR of P R and RR of R^2 less R's noise s^2, and PP - PR^2 / RR is what is left; of the noise
-// PR^2 has the mean of P^2 s^2.
-Fit fit(std::span<const Image> pictures, std::span<const Reference> references, double moments) {
-  struct Sums {
-    double pp = 0.0, pr = 0.0, rr = 0.0, noise = 0.0, noisePR2 = 0.0;
-  };
-  const auto count = static_cast<int>(pictures.size());
-  std::vector<Sums> all(squares(pictures.front()));
-  constexpr int kEarliest = 1, kLatest = 4;
-  for (int k = std::min(kLatest, count - 2); k + kEarliest < count; ++k) {
-    const double place = std::clamp(k - moments, 0.0, static_cast<double>(count - 1));
-    const auto a = static_cast<std::size_t>(std::min(static_cast<int>(place), count - 2));
-    const double u = place - static_cast<double>(a);
-    const Image& picture = pictures[static_cast<std::size_t>(k)];
-    for (std::size_t i = 0; i < picture.pixels.size(); ++i)
-      for (int c = 0; c < 3; ++c) {
-        Sums& sums = all[squareOf(picture, i, c)];
-        const double p = at(picture, i, c),
-                     r = (1.0 - u) * at(references[a].mean, i, c) + u * at(references[a + 1].mean, i, c),
-                     sa = (1.0 - u) * at(references[a].standardError, i, c),
-                     sb = u * at(references[a + 1].standardError, i, c), s2 = sa * sa + sb * sb;
-        sums.pp += p * p;
-        sums.pr += p * r;
-        sums.rr += r * r - s2;
-        sums.noise += s2;
-        sums.noisePR2 += p * p * s2;
-      }
+/// The moments that have a reference at each shift, from -1 to 4.
+int firstOfAll(std::size_t count) { return std::min(4, static_cast<int>(count) - 2); }
+
+/// Pictures explained by references that are late by some moments, each square and channel with its best gain.
+std::vector<Sums> squaresAt(std::span<const Image> pictures, std::span<const Reference> references, double late) {
+  const Image& image = pictures.front();
+  std::vector<Sums> sums(squareOf(image, image.pixels.size() - 1, 2) + 1);
+  const auto last = static_cast<int>(pictures.size()) - 2;
+  Sums::add(pictures, references, late, firstOfAll(pictures.size()), last,
+            [&](std::size_t i, int c) -> Sums& { return sums[squareOf(image, i, c)]; });
+  return sums;
+}
+
+/// Of each pixel and channel, over all moments that have a reference at that shift; 1 where references are dark or have
+/// noise alone.
+std::vector<double> gainsAt(std::span<const Image> pictures, std::span<const Reference> references, double late) {
+  std::vector<Sums> sums(3 * pictures.front().pixels.size());
+  const int last = static_cast<int>(pictures.size()) - (late < 0.0 ? 2 : 1);
+  Sums::add(pictures, references, late, std::max(static_cast<int>(std::ceil(late)), 0), last,
+            [&](std::size_t i, int c) -> Sums& { return sums[3 * i + static_cast<std::size_t>(c)]; });
+  std::vector<double> gains;
+  for (const Sums& s : sums) gains.push_back(s.gain());
+  return gains;
+}
+
+/// What has changed from each moment to the next, from `first` on: sum of squares, and that of its noise.
+struct Change {
+  double squares = 0.0, noise = 0.0;
+  bool isSeen() const { return squares - noise > kBeyondNoise * noise && squares > noise; }
+};
+
+Change changeFrom(std::span<const Reference> references, std::span<const double> variances, std::size_t first) {
+  Change change;
+  for (std::size_t k = std::max(first, std::size_t{1}); k < references.size(); ++k) {
+    const Image &r = references[k].mean, &before = references[k - 1].mean;
+    change.squares += sumOver(r, [&](std::size_t i, int c) {
+      const double d = at(before, i, c) - at(r, i, c);
+      return d * d;
+    });
+    change.noise += variances[k] + variances[k - 1];
   }
-  Fit result;
-  for (const Sums& sums : all) {
-    const bool isKnown = sums.rr > sums.noise && sums.rr > 0.0;
-    result.gains.push_back(isKnown ? sums.pr / sums.rr : 1.0);
-    if (isKnown) result.misfit += sums.pp - (sums.pr * sums.pr - sums.noisePR2) / sums.rr;
-  }
-  return result;
+  return change;
 }
 
 double ghosts(std::span<const Image> pictures, std::span<const Reference> references,
@@ -88,7 +123,7 @@ double ghosts(std::span<const Image> pictures, std::span<const Reference> refere
   for (std::size_t k = 1; k < pictures.size(); ++k)
     for (std::size_t i = 0; i < pictures[k].pixels.size(); ++i)
       for (int c = 0; c < 3; ++c) {
-        const double g = gains[squareOf(pictures[k], i, c)], r = at(references[k].mean, i, c),
+        const double g = gains[3 * i + static_cast<std::size_t>(c)], r = at(references[k].mean, i, c),
                      change = at(references[k - 1].mean, i, c) - r, s = at(references[k].standardError, i, c),
                      before = at(references[k - 1].standardError, i, c);
         kept += g * (at(pictures[k], i, c) - g * r) * change - g * g * s * s;
@@ -120,28 +155,20 @@ SequenceErrors sequenceErrors(std::span<const Image> pictures, std::span<const R
     errors.worst = std::max(errors.worst, errors.l2.back());
   }
 
-  double changed = 0.0, changeNoise = 0.0;
-  for (std::size_t k = 1; k < pictures.size(); ++k) {
-    const Image &r = references[k].mean, &before = references[k - 1].mean;
-    changed += sumOver(r, [&](std::size_t i, int c) {
-      const double d = at(before, i, c) - at(r, i, c);
-      return d * d;
-    });
-    changeNoise += variances[k] + variances[k - 1];
-  }
-  changed -= changeNoise;
   errors.lag = errors.ghosts = kNone;
-  if (changed > kBeyondNoise * changeNoise && changed > 0.0) {
-    std::vector<double> gains(squares(pictures.front()), 1.0);
-    if (pictures.size() >= 3) {
-      constexpr double kStep = 0.05;
-      double least = std::numeric_limits<double>::infinity();
-      for (int step = -20; step <= 80; ++step)
-        if (Fit here = fit(pictures, references, step * kStep); here.misfit < least)
-          least = here.misfit, errors.lag = step * kStep, gains = std::move(here.gains);
+  double late = 0.0;
+  if (pictures.size() >= 3 &&
+      changeFrom(references, variances, static_cast<std::size_t>(firstOfAll(pictures.size()))).isSeen()) {
+    constexpr double kStep = 0.05;
+    double least = std::numeric_limits<double>::infinity();
+    for (int step = -20; step <= 80; ++step) {
+      double here = 0.0;
+      for (const Sums& square : squaresAt(pictures, references, step * kStep)) here += square.misfit();
+      if (here < least) least = here, errors.lag = late = step * kStep;
     }
-    errors.ghosts = ghosts(pictures, references, gains);
   }
+  if (changeFrom(references, variances, 0).isSeen())
+    errors.ghosts = ghosts(pictures, references, gainsAt(pictures, references, late));
 
   errors.flicker = kNone;
   double ours = 0.0, theirs = 0.0, noise = 0.0;

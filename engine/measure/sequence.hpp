@@ -3,8 +3,9 @@
 // pixels and channels of all pictures. The references' noise is taken off each sum, so results are means over noise.
 //
 // A technique that lacks light has pictures that are too dark in all moments, which is neither lag nor ghosts. So both
-// allow each channel of each square of 16x16 pixels a gain g that is the same in all moments. (Where light grows and
-// fades by the same factor in a square, that is exact, whatever each pixel lacks.)
+// allow a gain g that is the same in all moments: lag one for each channel of each square of 16x16 pixels, ghosts one
+// for each pixel. (Where light grows and fades by the same factor in a square, that is exact, whatever each pixel
+// lacks.)
 //
 //   lag      the time by which the references would have to be late to explain the pictures best: the shift that makes
 //            sum |P(t) - g R(t - lag)|^2 least, with the best g, and R linear between moments; from -1 to 4 moments

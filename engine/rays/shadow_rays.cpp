@@ -8,6 +8,7 @@
 #include "shared/bindings.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace lucerna {
 
@@ -78,6 +79,7 @@ void ShadowRays::record(const View& view) {
   visible_.bindImage(0, gl::Access::write);
   program_->set("drawnOrigin", glm::vec3(-rayOrigin_));
   program_->set("pixelSample", view.samples > 1 ? view.sample : -1);
+  program_->set("samplesOfPixel", std::bit_ceil(static_cast<unsigned>(view.samples)));
   if (lights_.sun) {
     program_->set("sunDirection", glm::vec3(lights_.sun->direction));
     program_->set("sunLessCosine", sunLessCosine(*lights_.sun));

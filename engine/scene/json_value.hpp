@@ -23,6 +23,7 @@ using Json = nlohmann::json;
 constexpr double kMostLight = 1e30;
 
 struct Value;
+std::vector<double> keyTimesIn(const Json& json);  // scene/curve.hpp
 /// What a curve (scene/curve.hpp) is at the time of its Value. Throws Error(badInput) if it is none.
 Json valueAt(const Value& value);
 
@@ -47,7 +48,7 @@ struct Value {
     std::string found = json.dump(-1, ' ', false, Json::error_handler_t::replace);
     if (found.size() > 60) found = found.substr(0, 57) + "...";
     throwBadInput("{}: key \"{}\"{}: found {}, expected {}", file.string(), key,
-                  isCurve() ? fmt::format(" at {:g} s", time) : "", found, expected);
+                  keyTimesIn(json).empty() ? "" : fmt::format(" at {:g} s", time), found, expected);
   }
 
   Value at(std::string_view name) const {

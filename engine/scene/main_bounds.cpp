@@ -13,18 +13,30 @@ double farthestFrom(const glm::dvec3& point, const Bounds& box) {
   return glm::length(glm::max(glm::abs(box.min - point), glm::abs(box.max - point)));
 }
 
-double weightOf(const SweptBounds& mesh) { return diagonalOf(mesh.own) * diagonalOf(mesh.own); }
+/// Squared size: as a camera sees it, where there is one, at its farthest from the camera.
+double weightOf(const SweptBounds& mesh, const std::vector<Camera>& cameras) {
+  const double size = diagonalOf(mesh.own);
+  double largest = cameras.empty() ? size : 0.0;
+  for (const Camera& camera : cameras)
+    if (size > 0.0) largest = std::max(largest, size / (size + farthestFrom(camera.position, mesh.swept)));
+  return largest * largest;
+}
+
+struct Weighted {
+  SweptBounds mesh;
+  double weight;
+};
 
 /// Coordinate by coordinate.
-glm::dvec3 weightedMedian(const std::vector<SweptBounds>& meshes) {
+glm::dvec3 weightedMedian(const std::vector<Weighted>& meshes) {
   glm::dvec3 median(0.0);
   std::vector<std::pair<double, double>> places;  // with weights
   for (int axis = 0; axis < 3; ++axis) {
     places.clear();
     double left = 0.0;
-    for (const SweptBounds& mesh : meshes) {
-      places.emplace_back(mesh.own.centre()[axis], weightOf(mesh));
-      left += 0.5 * weightOf(mesh);
+    for (const Weighted& each : meshes) {
+      places.emplace_back(each.mesh.own.centre()[axis], each.weight);
+      left += 0.5 * each.weight;
     }
     std::ranges::sort(places);
     auto place = places.begin();
@@ -38,14 +50,17 @@ glm::dvec3 weightedMedian(const std::vector<SweptBounds>& meshes) {
 
 std::optional<Bounds> boundsWithoutFarMeshes(const std::vector<SweptBounds>& all, const std::vector<Camera>& cameras) {
   constexpr double kSmall = 0.01;
-  std::vector<SweptBounds> left;
-  std::ranges::copy_if(all, std::back_inserter(left), [](const SweptBounds& mesh) { return !mesh.own.empty(); });
+  std::vector<Weighted> left;
+  double half = 0.0;
+  for (const SweptBounds& mesh : all) {
+    if (mesh.own.empty()) continue;
+    left.push_back({mesh, weightOf(mesh, cameras)});
+    half += 0.5 * left.back().weight;
+  }
   if (left.size() < 2) return std::nullopt;
   const glm::dvec3 median = weightedMedian(left);
-  std::ranges::stable_sort(left, {}, [&](const SweptBounds& mesh) { return farthestFrom(median, mesh.swept); });
+  std::ranges::stable_sort(left, {}, [&](const Weighted& each) { return farthestFrom(median, each.mesh.swept); });
   Bounds main;
-  const double half = 0.5 * std::accumulate(left.begin(), left.end(), 0.0,
-                                            [](double sum, const SweptBounds& mesh) { return sum + weightOf(mesh); });
   double weight = 0.0;
   const auto isMain = [&](const SweptBounds& mesh) {
     const double distance = main.empty() ? 0.0 : farthestFrom(main.centre(), mesh.swept), size = diagonalOf(mesh.own);
@@ -57,10 +72,10 @@ std::optional<Bounds> boundsWithoutFarMeshes(const std::vector<SweptBounds>& all
   // Each mesh that is added may bring others near.
   for (bool grows = true; grows;) {
     grows = false;
-    std::erase_if(left, [&](const SweptBounds& mesh) {
-      if (!isMain(mesh)) return false;
-      main.add(mesh.swept);
-      weight += weightOf(mesh);
+    std::erase_if(left, [&](const Weighted& each) {
+      if (!isMain(each.mesh)) return false;
+      main.add(each.mesh.swept);
+      weight += each.weight;
       return grows = true;
     });
   }

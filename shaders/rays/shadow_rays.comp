@@ -1,7 +1,8 @@
 // Which lights reach the surface at a point of each pixel: one bit a light, the sun's first where there is one, then
 // the lamps', 128 in a layer. One ray goes to each light, to a point of its disc or ball that differs from pixel to
-// pixel and from sample to sample, so that the mean of a pixel's samples is the visible share. A pixel with one sample
-// looks at the middle.
+// pixel and from sample to sample, so that the mean of a pixel's samples is the visible share. One sequence of points
+// serves the samples of all pixels along a Morton curve, so that those of neighbouring pixels are stratified together
+// as well and their noise is blue [AhmedWonka2020]. A pixel with one sample looks at the middle.
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "shared/bindings.h"
 #include "shared/lights.h"
@@ -14,6 +15,7 @@ layout(std140, binding = BLOCK_CACHE_PATHS) uniform PathBlock { PathConstants tr
 #include "rays/shadow_start.glsl"
 #include "rays/view.glsl"
 #include "lib/round_light.glsl"
+#include "lib/morton.glsl"
 #if WIDE
 layout(binding = 0, rgba32ui) writeonly restrict uniform uimage2DArray visibleLights;
 #else
@@ -27,6 +29,7 @@ uniform vec3 sunDirection;
 uniform float sunLessCosine;  // 1 - cosine of half its diameter
 uniform ivec2 firstPixel;
 uniform int pixelSample;  // its number; below 0: the only one
+uniform uint samplesOfPixel;  // a power of two
 
 void main() {
   ivec2 pixel = firstPixel + ivec2(gl_GlobalInvocationID.xy);
@@ -41,7 +44,7 @@ void main() {
     surface = surfaceAt(hit.triangle, hit.barycentrics, view.direction);
     start = shadowStart(surface, hit.triangle);
   }
-  PathNumbers numbers = PathNumbers(uint(pixel.y * tracer.picture.x + pixel.x), uint(max(pixelSample, 0)), 0u);
+  PathNumbers numbers = PathNumbers(0u, mortonOf(pixel) * samplesOfPixel + uint(max(pixelSample, 0)), 0u);
   const int kCount = SUN_RAYS + LAMPS;
   for (int first = 0; first < kCount; first += 128) {
     uvec4 reached = uvec4(0u);

@@ -102,6 +102,30 @@ TEST_F(RoundLights, ThePenumbraOfASunIsTheShareOfItsDisc) {
   }
 }
 
+// Points on the disc are stratified over neighbouring pixels: the error of the mean of four is less than half of one's.
+TEST_F(RoundLights, NeighboursShareTheNoiseOfAPenumbra) {
+  HalfCoveredFloor scene(true);
+  double ofPixels = 0.0, ofSquares = 0.0;
+  for (const double degrees : {40.0, 45.0, 50.0, 55.0, 60.0, 65.0}) {
+    scene.sun = DirectionalLight{{0.0, -1.0, 0.0}, glm::vec3(static_cast<float>(kPi)), degrees * kDegree};
+    const Image right = drawn(scene, ShadowTransport::rays, 1024);
+    for (const int samples : {2, 4, 8}) {
+      const Image image = drawn(scene, ShadowTransport::rays, samples);
+      for (int x = 0; x < kFloorPixels; x += 2) {
+        double sum = 0.0;
+        for (int k = 0; k < 4; ++k) {
+          const double error = static_cast<double>(image.at(x + k % 2, k / 2).x - right.at(x + k % 2, k / 2).x);
+          sum += error;
+          ofPixels += 0.25 * error * error;
+        }
+        ofSquares += 0.0625 * sum * sum;
+      }
+    }
+  }
+  std::printf("mean of four pixels: %.3f of the error of one\n", std::sqrt(ofSquares / ofPixels));
+  EXPECT_LT(ofSquares, 0.18 * ofPixels);  // 0.21 where each pixel has points of its own
+}
+
 // By maps: the share of taps within the disc that the blocker's depth gives, against the disc's.
 TEST_F(RoundLights, PenumbraeOfMapsAreAsWideAsTheBlockerIsFar) {
   for (const double height : {2.0, 0.9, 0.02}) {

@@ -55,7 +55,7 @@ TEST(MainBounds, HoldWhatACameraIsNear) {
   Camera camera;
   camera.position = {1, 0, 20};
   EXPECT_FALSE(mainOf({room, mountain}, {}, {camera}));
-  camera.position = {1, 0, 200};
+  camera.position = {1500, 0, 0};
   const std::optional<Bounds> found = mainOf({room, mountain}, {}, {camera});
   ASSERT_TRUE(found);
   expectEqual(*found, mountain);
@@ -66,6 +66,19 @@ TEST(MainBounds, HoldWhatACameraIsNear) {
   const std::optional<Bounds> without = mainOf({room}, {{boxAt({1, 0, 20.2}, 0.2), flight}}, {camera});
   ASSERT_TRUE(without);
   expectEqual(*without, room);
+}
+
+// Two groups alike, of which the cameras see one.
+TEST(MainBounds, LieWhereTheCamerasAre) {
+  const std::vector<Bounds> groups{boxAt({0, 0, 0}, 4.0), boxAt({1, 0, 0}, 1.0), boxAt({5000, 0, 0}, 4.0),
+                                   boxAt({5001, 0, 0}, 1.0), boxAt({5002, 0, 0}, 1.0)};
+  for (const double place : {0.0, 5000.0}) {
+    Camera camera;
+    camera.position = {place, 0, 100};
+    const std::optional<Bounds> found = mainOf(groups, {}, {camera});
+    ASSERT_TRUE(found) << place;
+    EXPECT_EQ(found->min.x, place - 2.0);
+  }
 }
 
 // A row of things, each near to the next, is a scene of its length.
