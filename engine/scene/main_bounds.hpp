@@ -18,7 +18,7 @@ struct SweptBounds {
 
 /// The bounds without meshes that are far off and small: more than kFarOff diagonals of all others from their centre,
 /// and less than 1/100 of that distance wide (0.6 degrees as seen from there). nullopt: there are none such.
-/// What is near is decided from the median of the meshes on, weighted by their squared diagonals, as seen by the cameras
+/// What is near is decided from the median of the meshes on, weighted by their squared diagonals, as cameras see them
 /// if there are any. A mesh that is always less than kFarOff of its own diagonals from a camera is not far off.
 std::optional<Bounds> boundsWithoutFarMeshes(const std::vector<SweptBounds>& meshes,
                                              const std::vector<Camera>& cameras);
