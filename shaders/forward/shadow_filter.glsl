@@ -77,8 +77,12 @@ vec2 penumbraNoise() {
 // Percentage-closer soft shadows [Fernando2005] of what is distant. The mean of blockers' depths gives the penumbra's
 // radius, and the share of lit places within it the light. Places lie on a spiral that fills the disc evenly
 // [Vogel1979]; those of the search lie more densely around the receiver, where the cone is narrow. A blocker counts
-// less the farther it lies outside of the cone, where it covers nothing of the light.
+// less the farther it lies outside of the cone, where it covers nothing of the light. What is nearer is left to the
+// tent, with some overlap: beside a place that is just distant is another that is just not, beyond the reach of its
+// tent.
 float pastDistantBlockers(ShadowReceiver receiver) {
+  const float kOverlap = 0.75;
+  float distant = kOverlap * receiver.distant;
   const int kSearch = PENUMBRA_TAPS / 2, kTaps = PENUMBRA_TAPS;
   const mat2 kTurn = mat2(-0.737368878, 0.675490294, -0.675490294, -0.737368878);  // by the golden angle
   vec2 noise = penumbraNoise();
@@ -89,7 +93,7 @@ float pastDistantBlockers(ShadowReceiver receiver) {
     float radius = (float(i) + noise.y) / float(kSearch);
     vec2 offset = receiver.spread * (reach * radius * direction);
     float stored = storedDepth(receiver, receiver.place + offset), height = receiver.depth - stored;
-    if (stored < receiver.depth + dot(receiver.slope, offset) - receiver.distant && height > 0.0) {
+    if (stored < receiver.depth + dot(receiver.slope, offset) - distant && height > 0.0) {
       float outside = reach * radius / height, weight = 1.0 / (1.0 + pow(outside, 8.0));
       found += weight;
       heights += weight * height;
@@ -101,7 +105,7 @@ float pastDistantBlockers(ShadowReceiver receiver) {
   for (int i = 0; i < kTaps; ++i) {
     vec2 offset = receiver.spread * (height * sqrt((float(i) + noise.y) / float(kTaps)) * direction);
     float depth = receiver.depth + dot(receiver.slope, offset);
-    lit += float(storedDepth(receiver, receiver.place + offset) >= min(depth - receiver.distant, 1.0));
+    lit += float(storedDepth(receiver, receiver.place + offset) >= min(depth - distant, 1.0));
     direction = kTurn * direction;
   }
   return lit / float(kTaps);

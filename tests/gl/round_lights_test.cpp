@@ -150,6 +150,29 @@ TEST_F(RoundLights, PenumbraeOfMapsAreAsWideAsTheBlockerIsFar) {
   }
 }
 
+// Under a slanting roof, from where the tent finds it to where it is distant, no place is lit. The map has ten times as
+// many texels along x as across, so that the penumbra's taps reach far beyond the tent.
+TEST_F(RoundLights, NoLightPassesBetweenWhatIsNearAndWhatIsDistant) {
+  HalfCoveredFloor scene(false);
+  for (Vertex& v : scene.vertices) v.position.x *= 0.1f;
+  const auto first = static_cast<std::uint32_t>(scene.vertices.size());
+  for (const glm::vec2& p : {glm::vec2(-5, 50), glm::vec2(5, 50), glm::vec2(5, -50), glm::vec2(-5, -50)})
+    scene.vertices.push_back({glm::vec3(p.x, 1.7f + 0.75f * p.x, p.y), {}, {0, 1, 0}});
+  for (const std::uint32_t i : {0u, 1u, 2u, 0u, 2u, 3u}) scene.indices.push_back(first + i);
+  scene.bounds = {};
+  for (const Vertex& v : scene.vertices) scene.bounds.add(glm::dvec3(v.position));
+  scene.meshes[0].indexCount = static_cast<std::uint32_t>(scene.indices.size());
+  scene.meshes[0].bounds = scene.bounds;
+  scene.cameras.front().position.y = 0.1;
+  float brightest = 0.0f;
+  for (double degrees = 1.8; degrees < 2.2; degrees += 0.02) {  // so that the limit meets the middle of a pixel
+    scene.sun = DirectionalLight{{0.0, -1.0, 0.0}, glm::vec3(static_cast<float>(kPi)), degrees * kDegree};
+    for (const glm::vec3& pixel : drawn(scene, ShadowTransport::map, 4).pixels)
+      brightest = std::max(brightest, pixel.x);
+  }
+  EXPECT_EQ(brightest, 0.0f);
+}
+
 TEST_F(RoundLights, PenumbraeOfASlantingSunInAMapAreThoseOfPaths) {
   HalfCoveredFloor scene(true);
   scene.cameras.front().position.x = 1.6;

@@ -8,6 +8,7 @@
 //   mean normal x y, z and covariance xx, yy xy, xz yz (zz follows, since normals are of unit length);
 //   area, sum of the flux's channels, red and green share of it, nothing.
 #define TREE_TEXELS 3
+#include "lib/morton.glsl"
 uniform int treeSize;    // texels a side of the map
 uniform int treeLayers;  // of the map: 1, or the faces of a cube
 uniform int treeDepth;   // of the leaves: 2^treeDepth is at least treeSize
