@@ -1,7 +1,6 @@
 #include "scene/main_bounds.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 namespace lucerna {
 

@@ -210,6 +210,7 @@ void addFloor(Scene& scene) {
   scene.materials.push_back(material);
   scene.meshes.push_back(mesh);
   scene.bounds.add(mesh.bounds);
+  if (scene.mainBounds) scene.mainBounds->add(mesh.bounds);
   if (!scene.motion) return;
   if (!scene.motion->restVertices.empty()) append(scene.motion->restVertices, scene.motion->restIndices);
   scene.motion->bounds.add(mesh.bounds);

@@ -1,6 +1,7 @@
 // The bounds for which resolutions are chosen: without what is far off and small.
 #include "scene/main_bounds.hpp"
 #include "scene/motion.hpp"
+#include "scene/studio.hpp"
 #include "support/temp_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -117,6 +118,18 @@ TEST(MainBounds, AreThoseOfTheWholeMotion) {
     expectEqual(*scene.mainBounds, Bounds{{-2, 0, -2}, {2, 0, 2}});
   }
   EXPECT_FALSE(load("10").mainBounds);
+}
+
+TEST(MainBounds, HoldTheStudiosFloor) {
+  const test::TempFolder folder;
+  Scene scene = loadScene(folder.write("m.obj",
+                                       "o box\nv -1 0 -1\nv 1 0 -1\nv 1 2 1\nv -1 2 1\nf 4 3 2 1\n"
+                                       "o far\nv 1e4 0 0\nv 10000.1 0 0\nv 10000 0.1 0\nf 5 6 7\n"));
+  ASSERT_TRUE(scene.mainBounds);
+  expectEqual(*scene.mainBounds, Bounds{{-1, 0, -1}, {1, 2, 1}});
+  addFloor(scene);
+  EXPECT_LT(scene.mainBounds->max.x, 100.0);
+  EXPECT_GT(scene.mainBounds->max.x, 2.0);
 }
 
 // Where a view or a lamp is far off, resolutions are as they are at home.
