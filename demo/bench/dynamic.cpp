@@ -24,13 +24,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -283,12 +283,13 @@ std::string number(double value) { return std::isnan(value) ? "-" : fmt::format(
 
 /// One line a technique.
 std::string tableOf(const std::vector<Row>& rows) {
-  std::size_t longest = std::strlen("technique");
+  constexpr std::string_view kHead = "technique";
+  std::size_t longest = kHead.size();
   for (const Row& row : rows) longest = std::max(longest, row.name.size());
   std::string text = fmt::format(
       "{:<{}}  mean error  worst     lag, frames  ghosts    flicker  samples  ms a frame, "
       "median (quartiles)\n",
-      "technique", longest);
+      kHead, longest);
   for (const Row& row : rows)
     text += fmt::format("{:<{}}  {:<11} {:<9} {:<12} {:<9} {:<8} {:<8} {:.1f} ({:.1f} to {:.1f})\n", row.name, longest,
                         percent(row.errors.mean), percent(row.errors.worst), number(row.errors.lag),

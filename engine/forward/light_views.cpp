@@ -23,19 +23,13 @@ constexpr std::array<Face, 6> kFaces{{{{1, 0, 0}, {0, -1, 0}},
 
 float largest(const glm::vec3& v) { return std::max({v.x, v.y, v.z}); }
 
-double farPlane(const glm::dvec3& position, const Bounds& box) {
-  double farthest = 0.0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const glm::dvec3 p(corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
-                       corner & 4 ? box.max.z : box.min.z);
-    farthest = std::max(farthest, glm::length(p - position));
-  }
-  return farthest > 0.0 ? 1.01 * farthest : 1.0;
-}
-
 void placePlanes(LightViews& views, const Scene& scene) {
-  views.far = farPlane(views.position, scene.bounds);
-  views.near = farPlane(views.position, scene.mainAround(views.position)) / 2000.0;
+  const auto farPlane = [&](const Bounds& box) {
+    const double farthest = box.farthestFrom(views.position);
+    return farthest > 0.0 ? 1.01 * farthest : 1.0;
+  };
+  views.far = farPlane(scene.bounds);
+  views.near = farPlane(scene.mainAround(views.position)) / 2000.0;
 }
 
 glm::dmat4 view(const LightViews& views, const glm::dvec3& axis, const glm::dvec3& up) {

@@ -45,8 +45,7 @@ std::vector<SunCascade> placeSunCascades(const SunCascadeSettings& settings, con
   CHECK(settings.cascades >= 1 && settings.cascades <= SUN_MAX_CASCADES, "cascades = {}", settings.cascades);
   const Bounds bounds = scene.mainAround(camera.position);
   const double diagonal = std::max(glm::length(bounds.extent()), 1e-6);
-  const double farthest =
-      glm::length(glm::max(glm::abs(bounds.min - camera.position), glm::abs(bounds.max - camera.position)));
+  const double farthest = bounds.farthestFrom(camera.position);
   const double far =
       std::max(diagonal * std::exp2(std::ceil(4.0 * std::log2(std::max(farthest / diagonal, 1.0))) / 4.0), 2.0 * near);
   const std::vector<double> splits = splitDistances(near, far, settings.cascades, settings.split);

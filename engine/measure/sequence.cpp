@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -30,11 +31,11 @@ double sumOfSquares(const Image& image) {
   return sumOver(image, [&](std::size_t i, int c) { return at(image, i, c) * at(image, i, c); });
 }
 
-/// Number of a pixel's channel among those of all squares.
-std::size_t squareOf(const Image& image, std::size_t pixel, int channel) {
+/// Number of a pixel's square.
+std::size_t squareOf(const Image& image, std::size_t pixel) {
   constexpr std::size_t kSide = 16;
   const auto width = static_cast<std::size_t>(image.width), across = (width + kSide - 1) / kSide;
-  return 3 * (pixel / width / kSide * across + pixel % width / kSide) + static_cast<std::size_t>(channel);
+  return pixel / width / kSide * across + pixel % width / kSide;
 }
 
 /// Sums of pictures P and references R, which are late by some moments, over moments and pixels.
@@ -42,7 +43,7 @@ struct Sums {
   double pp = 0.0, pr = 0.0, rr = 0.0;  ///< rr: less R's noise
   double noise = 0.0, noisePR2 = 0.0;  ///< of R^2; of the square of pr
 
-  /// Adds the moments of [first, last] to of(pixel, channel).
+  /// Adds the moments of [first, last] to of(pixel), an array of three channels.
   template <class Of>
   static void add(std::span<const Image> pictures, std::span<const Reference> references, double late, int first,
                   int last, const Of& of) {
@@ -52,9 +53,10 @@ struct Sums {
       const auto a = static_cast<std::size_t>(std::min(static_cast<int>(place), count - 2));
       const double u = place - static_cast<double>(a);
       const Image& picture = pictures[static_cast<std::size_t>(k)];
-      for (std::size_t i = 0; i < picture.pixels.size(); ++i)
+      for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
+        std::array<Sums, 3>& channels = of(i);
         for (int c = 0; c < 3; ++c) {
-          Sums& sums = of(i, c);
+          Sums& sums = channels[static_cast<std::size_t>(c)];
           const double p = at(picture, i, c),
                        r = (1.0 - u) * at(references[a].mean, i, c) + u * at(references[a + 1].mean, i, c),
                        sa = (1.0 - u) * at(references[a].standardError, i, c),
@@ -65,9 +67,11 @@ struct Sums {
           sums.noise += s2;
           sums.noisePR2 += p * p * s2;
         }
+      }
     }
   }
   bool isKnown() const { return rr > noise && rr > 0.0; }
+  /// 1 where references are dark, or have noise alone.
   double gain() const { return isKnown() ? pr / rr : 1.0; }
   /// sum |P - g R|^2 with the best g; the square of pr has the mean of P^2 s^2 of noise.
   double misfit() const { return isKnown() ? pp - (pr * pr - noisePR2) / rr : 0.0; }
@@ -77,25 +81,24 @@ struct Sums {
 int firstOfAll(std::size_t count) { return std::min(4, static_cast<int>(count) - 2); }
 
 /// Pictures explained by references that are late by some moments, each square and channel with its best gain.
-std::vector<Sums> squaresAt(std::span<const Image> pictures, std::span<const Reference> references, double late) {
+std::vector<std::array<Sums, 3>> squaresAt(std::span<const Image> pictures, std::span<const Reference> references,
+                                           double late) {
   const Image& image = pictures.front();
-  std::vector<Sums> sums(squareOf(image, image.pixels.size() - 1, 2) + 1);
+  std::vector<std::array<Sums, 3>> sums(squareOf(image, image.pixels.size() - 1) + 1);
   const auto last = static_cast<int>(pictures.size()) - 2;
   Sums::add(pictures, references, late, firstOfAll(pictures.size()), last,
-            [&](std::size_t i, int c) -> Sums& { return sums[squareOf(image, i, c)]; });
+            [&](std::size_t i) -> std::array<Sums, 3>& { return sums[squareOf(image, i)]; });
   return sums;
 }
 
-/// Of each pixel and channel, over all moments that have a reference at that shift; 1 where references are dark or have
-/// noise alone.
-std::vector<double> gainsAt(std::span<const Image> pictures, std::span<const Reference> references, double late) {
-  std::vector<Sums> sums(3 * pictures.front().pixels.size());
+/// Of each pixel, over all moments that have a reference at that shift.
+std::vector<std::array<Sums, 3>> pixelsAt(std::span<const Image> pictures, std::span<const Reference> references,
+                                          double late) {
+  std::vector<std::array<Sums, 3>> sums(pictures.front().pixels.size());
   const int last = static_cast<int>(pictures.size()) - (late < 0.0 ? 2 : 1);
   Sums::add(pictures, references, late, std::max(static_cast<int>(std::ceil(late)), 0), last,
-            [&](std::size_t i, int c) -> Sums& { return sums[3 * i + static_cast<std::size_t>(c)]; });
-  std::vector<double> gains;
-  for (const Sums& s : sums) gains.push_back(s.gain());
-  return gains;
+            [&](std::size_t i) -> std::array<Sums, 3>& { return sums[i]; });
+  return sums;
 }
 
 /// What has changed from each moment to the next, from `first` on: sum of squares, and that of its noise.
@@ -117,13 +120,13 @@ Change changeFrom(std::span<const Reference> references, std::span<const double>
   return change;
 }
 
-double ghosts(std::span<const Image> pictures, std::span<const Reference> references,
-              const std::vector<double>& gains) {
+double ghosts(std::span<const Image> pictures, std::span<const Reference> references, double late) {
+  const std::vector<std::array<Sums, 3>> sums = pixelsAt(pictures, references, late);
   double kept = 0.0, changed = 0.0;
   for (std::size_t k = 1; k < pictures.size(); ++k)
     for (std::size_t i = 0; i < pictures[k].pixels.size(); ++i)
       for (int c = 0; c < 3; ++c) {
-        const double g = gains[3 * i + static_cast<std::size_t>(c)], r = at(references[k].mean, i, c),
+        const double g = sums[i][static_cast<std::size_t>(c)].gain(), r = at(references[k].mean, i, c),
                      change = at(references[k - 1].mean, i, c) - r, s = at(references[k].standardError, i, c),
                      before = at(references[k - 1].standardError, i, c);
         kept += g * (at(pictures[k], i, c) - g * r) * change - g * g * s * s;
@@ -163,12 +166,12 @@ SequenceErrors sequenceErrors(std::span<const Image> pictures, std::span<const R
     double least = std::numeric_limits<double>::infinity();
     for (int step = -20; step <= 80; ++step) {
       double here = 0.0;
-      for (const Sums& square : squaresAt(pictures, references, step * kStep)) here += square.misfit();
+      for (const std::array<Sums, 3>& square : squaresAt(pictures, references, step * kStep))
+        for (const Sums& channel : square) here += channel.misfit();
       if (here < least) least = here, errors.lag = late = step * kStep;
     }
   }
-  if (changeFrom(references, variances, 0).isSeen())
-    errors.ghosts = ghosts(pictures, references, gainsAt(pictures, references, late));
+  if (changeFrom(references, variances, 0).isSeen()) errors.ghosts = ghosts(pictures, references, late);
 
   errors.flicker = kNone;
   double ours = 0.0, theirs = 0.0, noise = 0.0;

@@ -29,13 +29,7 @@ namespace lucerna {
 namespace {
 
 double farPlane(const Camera& camera, const Bounds& bounds) {
-  double farthest = std::max(glm::length(bounds.extent()), 1e-6);
-  for (int corner = 0; corner < 8; ++corner) {
-    const glm::dvec3 p(corner & 1 ? bounds.max.x : bounds.min.x, corner & 2 ? bounds.max.y : bounds.min.y,
-                       corner & 4 ? bounds.max.z : bounds.min.z);
-    farthest = std::max(farthest, glm::length(p - camera.position));
-  }
-  return 1.01 * farthest;
+  return 1.01 * std::max({glm::length(bounds.extent()), 1e-6, bounds.farthestFrom(camera.position)});
 }
 
 // The far plane is just behind the scene's farthest corner. An orthographic view begins at its camera.

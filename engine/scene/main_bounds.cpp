@@ -8,16 +8,12 @@ namespace {
 
 double diagonalOf(const Bounds& box) { return box.empty() ? 0.0 : glm::length(box.extent()); }
 
-double farthestFrom(const glm::dvec3& point, const Bounds& box) {
-  return glm::length(glm::max(glm::abs(box.min - point), glm::abs(box.max - point)));
-}
-
 /// Squared size: as a camera sees it, where there is one, at its farthest from the camera.
 double weightOf(const SweptBounds& mesh, const std::vector<Camera>& cameras) {
   const double size = diagonalOf(mesh.own);
   double largest = cameras.empty() ? size : 0.0;
   for (const Camera& camera : cameras)
-    if (size > 0.0) largest = std::max(largest, size / (size + farthestFrom(camera.position, mesh.swept)));
+    if (size > 0.0) largest = std::max(largest, size / (size + mesh.swept.farthestFrom(camera.position)));
   return largest * largest;
 }
 
@@ -58,14 +54,14 @@ std::optional<Bounds> boundsWithoutFarMeshes(const std::vector<SweptBounds>& all
   }
   if (left.size() < 2) return std::nullopt;
   const glm::dvec3 median = weightedMedian(left);
-  std::ranges::stable_sort(left, {}, [&](const Weighted& each) { return farthestFrom(median, each.mesh.swept); });
+  std::ranges::stable_sort(left, {}, [&](const Weighted& each) { return each.mesh.swept.farthestFrom(median); });
   Bounds main;
   double weight = 0.0;
   const auto isMain = [&](const SweptBounds& mesh) {
-    const double distance = main.empty() ? 0.0 : farthestFrom(main.centre(), mesh.swept), size = diagonalOf(mesh.own);
+    const double distance = main.empty() ? 0.0 : mesh.swept.farthestFrom(main.centre()), size = diagonalOf(mesh.own);
     return weight < half || distance <= kFarOff * diagonalOf(main) || size >= kSmall * distance ||
            std::ranges::any_of(cameras, [&](const Camera& camera) {
-             return farthestFrom(camera.position, mesh.swept) < kFarOff * size;
+             return mesh.swept.farthestFrom(camera.position) < kFarOff * size;
            });
   };
   // Each mesh that is added may bring others near.

@@ -178,8 +178,7 @@ void addMoves(Scene& scene, const std::vector<KeyFrameMove>& moves, const std::f
 }
 
 void finishMotion(Scene& scene) {
-  findMainBounds(scene);
-  if (!scene.motion) return;
+  if (!scene.motion) return findMainBounds(scene);
   SceneMotion& motion = *scene.motion;
   if (!motion.restVertices.empty()) {
     scene.vertices = motion.restVertices;

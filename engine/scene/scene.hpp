@@ -34,6 +34,7 @@ struct Bounds {
     max = glm::max(max, b.max);
   }
   glm::dvec3 centre() const { return 0.5 * (min + max); }
+  double farthestFrom(const glm::dvec3& p) const { return glm::length(glm::max(glm::abs(min - p), glm::abs(max - p))); }
   glm::dvec3 extent() const { return empty() ? glm::dvec3(0.0) : max - min; }
 };
 
