@@ -19,10 +19,6 @@ using Corners = std::array<glm::dvec3, 3>;
 /// Distance from a point to a triangle; a triangle without area counts as its longest side.
 double distanceTo(const Corners& triangle, const glm::dvec3& point);
 
-/// A unit vector on an octahedron unfolded to a square [Cigolle2014], as GLSL's packSnorm2x16.
-std::uint32_t packNormal(const glm::dvec3& normal);
-glm::dvec3 unpackNormal(std::uint32_t packed);
-
 /// As the shaders read it.
 struct Clearance {
   std::uint32_t normal = 0;  ///< packed; points to the triangles

@@ -167,7 +167,12 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
   features_.denseMedia = features_.denseMedia && features_.dielectrics && settings.walks && !published &&
                          (!settings.nextEvent || lampsOutside_);
   scene_.emplace(scene, features_, capabilities,
-                 PathScene::Settings{settings.diffuseOnly, settings.nextEvent, settings.rays, asksSunApart()},
+                 PathScene::Settings{
+                     .diffuseOnly = settings.diffuseOnly,
+                     .nextEvent = settings.nextEvent,
+                     .rays = settings.rays,
+                     .sunApart = asksSunApart(),
+                     .fewestOfHierarchy = settings.deviations == PathDeviations{} ? settings.fewestOfHierarchy : 0},
                  boundaries_.rankOfMaterial);
   scene_->fill(constants_);
   sceneHash_ = scene_->hash();

@@ -44,6 +44,7 @@ class PathTracer {
         false;  ///< treat every scattering surface as Lambert with its `diffuse`, as forward shading does
     bool walks = true;  ///< no rays in dense media where no triangle is near; the picture is the same, bit by bit,
                         ///< but where lamps are sought through boundaries: there nothing walks
+    std::size_t fewestOfHierarchy = kFewestOfHierarchy;  ///< lamps; 0: they are always drawn by power
     bool nextEvent = true;  ///< sample lights directly; without it only lights that rays can hit contribute
     PixelFilter filter = PixelFilter::box;  ///< of camera rays
     std::uint32_t seed = 0;  ///< pictures of different seeds are independent

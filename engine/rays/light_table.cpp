@@ -66,9 +66,19 @@ LightTable lightTable(const Scene& scene, const glm::dvec3& origin, bool sunApar
   const double radius = scene.bounds.empty() ? 1.0 : std::max(0.5 * glm::length(scene.main().extent()), 1e-300);
   const double disc = kPi * radius * radius;
   const auto add = [&](const shared::PathLight& light, double power) {
-    if (!(power > 0.0)) return;
+    if (!(power > 0.0)) return false;
     table.lights.push_back(light);
     powers.push_back(power);
+    return true;
+  };
+  const auto addLamp = [&](const shared::PathLight& light, double power, LocalLamp lamp) {
+    lamp.light = static_cast<std::uint32_t>(table.lights.size());
+    if (!add(light, power)) return false;
+    table.lamps.push_back(lamp);
+    return true;
+  };
+  const auto ball = [](const glm::vec3& centre, double size) {
+    return LocalLamp{glm::dvec3(centre) - size, glm::dvec3(centre) + size};
   };
 
   // Sun and lamps.
@@ -89,7 +99,12 @@ LightTable lightTable(const Scene& scene, const glm::dvec3& origin, bool sunApar
     light.size = static_cast<float>(spot.radius);
     light.p = std::bit_cast<std::uint32_t>(static_cast<float>(std::cos(spot.innerAngle)));
     light.q = std::bit_cast<std::uint32_t>(static_cast<float>(std::cos(spot.outerAngle)));
-    add(light, worth(light.c) * 2.0 * kPi * (1.0 - 0.5 * (std::cos(spot.innerAngle) + std::cos(spot.outerAngle))));
+    LocalLamp lamp = ball(light.a, spot.radius);
+    lamp.axis = spot.direction;
+    lamp.axisAngle = spot.outerAngle;
+    lamp.intensity = worth(light.c);
+    addLamp(light, lamp.intensity * 2.0 * kPi * (1.0 - 0.5 * (std::cos(spot.innerAngle) + std::cos(spot.outerAngle))),
+            lamp);
   }
   for (const PointLight& point : scene.points) {
     shared::PathLight light{};
@@ -97,7 +112,10 @@ LightTable lightTable(const Scene& scene, const glm::dvec3& origin, bool sunApar
     light.a = place(point.position);
     light.c = point.intensity;
     light.size = static_cast<float>(point.radius);
-    add(light, worth(light.c) * 4.0 * kPi);
+    LocalLamp lamp = ball(light.a, point.radius);
+    lamp.axisAngle = kPi;
+    lamp.intensity = worth(light.c);
+    addLamp(light, lamp.intensity * 4.0 * kPi, lamp);
   }
   // Emissive triangles.
   const std::size_t lamps = table.lights.size();
@@ -127,9 +145,14 @@ LightTable lightTable(const Scene& scene, const glm::dvec3& origin, bool sunApar
       light.c = glm::vec3(ac);
       light.p = i / 3;
       light.q = static_cast<std::uint32_t>(mesh.material);
-      const std::size_t before = table.lights.size();
-      add(light, brightness * 2.0 * kPi * area);  // both sides emit
-      if (table.lights.size() > before) areas.push_back(area);
+      const glm::dvec3 p(light.a), q = p + glm::dvec3(light.b), r = p + glm::dvec3(light.c);
+      const LocalLamp lamp{.min = glm::min(p, glm::min(q, r)),
+                           .max = glm::max(p, glm::max(q, r)),
+                           .axis = glm::cross(ab, ac) / (2.0 * area),
+                           .emissionAngle = 0.5 * kPi,
+                           .isTwoSided = true,
+                           .intensity = brightness * area};
+      if (addLamp(light, lamp.intensity * 2.0 * kPi, lamp)) areas.push_back(area);  // both sides emit
     }
   }
   // The environment, last.
@@ -167,11 +190,16 @@ LightTable lightTable(const Scene& scene, const glm::dvec3& origin, bool sunApar
     light.threshold = picks.threshold[i - first];
     light.alias = static_cast<std::uint32_t>(first) + picks.alias[i - first];
     light.probability = static_cast<float>(picks.probability[i - first]);
+    if (light.kind != PATH_LIGHT_SUN && light.kind != PATH_LIGHT_ENVIRONMENT)
+      table.lampPick += picks.probability[i - first];
     if (light.kind == PATH_LIGHT_TRIANGLE) {
       table.pickDensity.resize(scene.triangleCount());
       table.pickDensity[light.p] = static_cast<float>(picks.probability[i - first] / areas[i - lamps]);
     }
   }
+  for (LocalLamp& lamp : table.lamps)
+    if (const shared::PathLight& light = table.lights[lamp.light]; light.kind == PATH_LIGHT_TRIANGLE)
+      lamp.density = table.pickDensity[light.p];
   if (environment) table.environmentPick = picks.probability.back();
   return table;
 }

@@ -6,6 +6,7 @@
 // Programs that take more than one sample may take one of the sun each time, and draw the others from other lights.
 #pragma once
 
+#include "rays/light_hierarchy.hpp"
 #include "scene/scene.hpp"
 #include "shared/path_tracer.h"
 
@@ -33,7 +34,9 @@ struct LightTable {
   std::vector<float> pickDensity;  ///< per triangle: probability density of sampling a point of it, per unit of area;
                                    ///< empty: nothing emits
   double environmentPick = 0.0;  ///< probability of sampling the environment picture
+  double lampPick = 0.0;  ///< probability of sampling any of `lamps`
   bool sunApart = false;  ///< the first light is the sun, of probability 1; the alias table is that of the others
+  std::vector<LocalLamp> lamps;  ///< the lights that are not at infinity
 };
 /// sunApart: where that is possible and pays, with a sun and other lights, none of them an environment picture.
 LightTable lightTable(const Scene& scene, const glm::dvec3& origin, bool sunApart = false);

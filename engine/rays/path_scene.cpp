@@ -1,6 +1,5 @@
 #include "rays/path_scene.hpp"
 
-#include "rays/light_table.hpp"
 #include "rays/texture_atlas.hpp"
 #include "scene/coat.hpp"
 #include "shared/bindings.h"
@@ -72,7 +71,7 @@ void PathScene::update(const Scene& scene, std::span<const std::size_t> meshes) 
   const glm::dvec3 origin = rays_.origin();
   if (!others.empty()) rays_.update(scene, others);
   setMaterials(scene);
-  const std::vector<float> before = std::move(pickDensity_);
+  const std::vector<std::uint32_t> before = std::move(lampWords_);
   uploadLights(scene);
   if (rays_.origin() != origin) {
     uploadTriangles(scene);
@@ -84,7 +83,7 @@ void PathScene::update(const Scene& scene, std::span<const std::size_t> meshes) 
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
     const Mesh& mesh = scene.meshes[m];
     for (std::uint32_t t = mesh.firstIndex / 3; t < (mesh.firstIndex + mesh.indexCount) / 3; ++t) {
-      if (!isOther[m] && (before.empty() || before[t] == pickDensity_[t])) continue;
+      if (!isOther[m] && (before.empty() || before[t] == lampWords_[t])) continue;
       writeTriangle(scene, t, static_cast<std::uint32_t>(mesh.material));
       changed.push_back(t);
     }
@@ -136,13 +135,29 @@ void PathScene::uploadLights(const Scene& scene) {
   if (settings_.nextEvent) {
     LightTable table = lightTable(scene, rays_.origin(), settings_.sunApart);
     sunApart_ = table.sunApart;
-    pickDensity_ = std::move(table.pickDensity);
+    lampWords_.clear();
+    for (const float density : table.pickDensity) lampWords_.push_back(std::bit_cast<std::uint32_t>(density));
+    if (settings_.fewestOfHierarchy > 0 && table.lamps.size() >= settings_.fewestOfHierarchy) uploadHierarchy(table);
     lightCount_ = table.lights.size();
     if (lightCount_ > 0) lights_ = storageOf("path lights", table.lights, *capabilities_);
     constants_.environmentPick = static_cast<float>(table.environmentPick);
   }
   materials_ = storageOf("path materials", materialValues_, *capabilities_);
   if (features_.environment) uploadEnvironment(*scene.environment);
+}
+
+void PathScene::uploadHierarchy(const LightTable& table) {
+  const LightHierarchy hierarchy = lightHierarchy(table.lamps);
+  if (hierarchy.texels.size() > static_cast<std::size_t>(capabilities_->maxTextureBufferSize)) return;
+  const std::size_t bytes = hierarchy.texels.size() * sizeof(glm::uvec4);
+  if (hierarchy_.bytes() == bytes) hierarchy_.upload(0, bytes, hierarchy.texels.data());
+  else hierarchy_ = gl::BufferTexture("light hierarchy", gl::Format::rgba32ui, bytes, hierarchy.texels.data());
+  constants_.lampPick = static_cast<float>(table.lampPick);
+  constants_.lampPairs = hierarchy.pairs;
+  for (std::size_t leaf = 0; leaf < hierarchy.lights.size(); ++leaf) {
+    const shared::PathLight& light = table.lights[hierarchy.lights[leaf]];
+    if (light.kind == PATH_LIGHT_TRIANGLE) lampWords_[light.p] = static_cast<std::uint32_t>(leaf);
+  }
 }
 
 void PathScene::uploadEnvironment(const Environment& environment) {
@@ -275,7 +290,7 @@ void PathScene::uploadTriangles(const Scene& scene) {
   triangles_ = storageOf("path triangles", triangleValues_, *capabilities_);
   if (settings_.rays.moves) return;
   triangleValues_ = {};
-  pickDensity_ = {};
+  lampWords_ = {};
 }
 
 void PathScene::writeTriangle(const Scene& scene, std::size_t triangle, std::uint32_t material) {
@@ -296,7 +311,7 @@ void PathScene::writeTriangle(const Scene& scene, std::size_t triangle, std::uin
   add3(glm::vec3(place(2)));
   add(normal.y);
   add3({normal.z, corners[2]->texCoord.x, corners[2]->texCoord.y});
-  add(pickDensity_.empty() ? 0.0f : pickDensity_[triangle]);
+  *word++ = lampWords_.empty() ? 0u : lampWords_[triangle];
   if (isTextured_)
     for (int k = 0; k < 2; ++k) add(corners[k]->texCoord.x), add(corners[k]->texCoord.y);
   if (features_.smoothNormals)
@@ -308,6 +323,7 @@ void PathScene::bind() const {
   triangles_.bindStorage(kTrianglesBinding);
   materials_.bindStorage(kMaterialsBinding);
   if (hasLights()) lights_.bindStorage(kLightsBinding);
+  if (hasHierarchy()) hierarchy_.bind(UNIT_LIGHT_HIERARCHY);
   if (atlas_) atlas_->bind(kAtlasUnit);
   else if (values_) values_->bind(kAtlasUnit);  // declared with any texture; no material reads it
   if (values_) values_->bind(kValuesUnit);
@@ -334,17 +350,20 @@ gl::ShaderFlags PathScene::flags() const {
           {"ENVIRONMENT", features_.environment},
           {"ENVIRONMENT_PICTURE", features_.environmentPicture},
           {"SUN_APART", sunApart_},
+          {"LIGHT_HIERARCHY", hasHierarchy()},
           {"NEXT_EVENT", hasLights()}};
 }
 
 void PathScene::fill(shared::PathConstants& constants) const {
   constants.environment = constants_.environment;
   constants.environmentPick = constants_.environmentPick;
+  constants.lampPick = constants_.lampPick;
+  constants.lampPairs = constants_.lampPairs;
   constants.environmentTurn = constants_.environmentTurn;
 }
 
 std::size_t PathScene::gpuBytes() const {
-  std::size_t bytes = rays_.gpuBytes() + triangles_.bytes() + materials_.bytes() + lights_.bytes();
+  std::size_t bytes = rays_.gpuBytes() + triangles_.bytes() + materials_.bytes() + lights_.bytes() + hierarchy_.bytes();
   for (const std::optional<gl::Texture>* texture :
        {&atlas_, &values_, &coats_, &environmentPicture_, &environmentTable_, &environmentRows_})
     if (*texture) bytes += (*texture)->bytes();

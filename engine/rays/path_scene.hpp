@@ -11,6 +11,7 @@
 #include "gl/context.hpp"
 #include "gl/objects.hpp"
 #include "gl/program.hpp"
+#include "rays/light_table.hpp"
 #include "rays/ray_scene.hpp"
 #include "scene/features.hpp"
 #include "scene/scene.hpp"
@@ -38,13 +39,17 @@ gl::Buffer storageOf(const std::string& name, const std::vector<T>& values, cons
   return buffer;
 }
 
+/// Lamps from which on drawing them from a hierarchy costs less than it saves (light_hierarchy.hpp).
+constexpr std::size_t kFewestOfHierarchy = 3;
+
 class PathScene {
  public:
   struct Settings {
     bool diffuseOnly = false;  ///< treat every scattering surface as Lambert with its wholeReflectance (scene/coat.hpp)
     bool nextEvent = true;  ///< with a table of lights for sampling
-    RaySceneSettings rays;
+    RaySceneSettings rays = {};
     bool sunApart = false;  ///< where it pays, the sun is not drawn with other lights (light_table.hpp)
+    std::size_t fewestOfHierarchy = kFewestOfHierarchy;  ///< lamps; 0: they are always drawn by power
   };
   /// `features`: the scene's, less those that the programs leave out. rankOfMaterial: for closed boundaries
   /// (media.hpp); may be empty. Throws Error(missingCapability) if the scene exceeds the driver's limits.
@@ -55,15 +60,16 @@ class PathScene {
   /// features and counts must be the same. RaySceneSettings::moves must be set. `meshes`: whose vertices are others.
   void update(const Scene& scene, std::span<const std::size_t> meshes);
 
-  /// Storage blocks 2, 3, 4; texture units 0, 1, 2, 4, 60, 61, 62, 63.
+  /// Storage blocks 2, 3, 4; texture units 0, 1, 2, 4, 55, 60, 61, 62, 63.
   void bind() const;
   /// Flags for the shaders named above.
   gl::ShaderFlags flags() const;
-  /// Fills in the environment and the probability of sampling it.
+  /// Fills in the environment, and the probabilities of sampling it and the lamps.
   void fill(shared::PathConstants& constants) const;
   bool hasLights() const { return lightCount_ > 0; }
   std::size_t lightCount() const { return lightCount_; }  ///< entries of the table: each emissive triangle is one
   bool hasCoats() const { return hasCoats_; }
+  bool hasHierarchy() const { return hierarchy_.bytes() > 0; }
   const RayScene& rays() const { return rays_; }
   const glm::dvec3& origin() const { return rays_.origin(); }
   const Hash& hash() const { return hash_; }  ///< over everything that affects paths, as it was made
@@ -73,6 +79,7 @@ class PathScene {
   void setMaterials(const Scene& scene);
   void uploadTextures(const Scene& scene);
   void uploadLights(const Scene& scene);
+  void uploadHierarchy(const LightTable& table);
   void uploadTriangles(const Scene& scene);
   void writeTriangle(const Scene& scene, std::size_t triangle, std::uint32_t material);
   void uploadEnvironment(const Environment& environment);
@@ -87,7 +94,8 @@ class PathScene {
   int triangleWords_ = 4;
   std::size_t lightCount_ = 0;
   bool sunApart_ = false;
-  std::vector<float> pickDensity_;  ///< of each triangle, or none
+  std::vector<std::uint32_t> lampWords_;  ///< of each triangle, or none: bits of pickDensity, or its leaf
+  gl::BufferTexture hierarchy_;
   std::vector<std::uint32_t> triangleValues_;  ///< as uploaded; only kept where the scene moves
   shared::PathConstants constants_{};
   gl::Buffer triangles_, materials_, lights_;

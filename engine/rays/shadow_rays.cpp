@@ -32,7 +32,7 @@ Scene surfacesOf(Scene scene) {
 const PathScene& TracedScene::get() {
   if (scene_) return *scene_;
   const SceneFeatures features = analyse(*source_);
-  PathScene::Settings settings{true, true, {}};
+  PathScene::Settings settings{.diffuseOnly = true};
   settings.rays.moves = source_->motion != nullptr;
   if (features.nullBoundaries) scene_.emplace(surfacesOf(*source_), features, *capabilities_, settings);
   else scene_.emplace(*source_, features, *capabilities_, settings);

@@ -176,7 +176,7 @@ Shadow queueShadowRay(Surface surface, uint triangle, float before2, vec3 throug
                       PathNumbers numbers) {
   Shadow shadow = Shadow(false, vec3(0.0), Ray(vec3(0.0), 0.0, vec3(1.0), 0.0), kNoHit);
   LightSample light;
-  if (!sampleLight(surface.position, randomPair(numbers, scatterings, kPurposeLight),
+  if (!sampleLight(surface.position, surface.normal, randomPair(numbers, scatterings, kPurposeLight),
                    randomWords(numbers, scatterings, kPurposePick), light))
     return shadow;
   bool isLamp = light.pdf == 0.0;

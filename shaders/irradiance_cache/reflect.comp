@@ -94,7 +94,7 @@ vec3 lampIrradiance(Surface surface, uint triangle, bool isWithin) {
 // cosine-weighted ray finds the other part.
 vec3 shiningIrradiance(Surface surface, uint triangle, bool isWithin, PathNumbers numbers, uint event) {
   LightSample light;
-  if (!sampleLight(surface.position, randomPair(numbers, event, kPurposeLight),
+  if (!sampleLight(surface.position, surface.normal, randomPair(numbers, event, kPurposeLight),
                    randomWords(numbers, event, kPurposePick), light) || light.pdf == 0.0)
     return vec3(0.0);
   float cosine = dot(light.direction, surface.normal);
@@ -112,7 +112,7 @@ vec3 lightIn(vec3 place, PathNumbers numbers, uint event) {
   vec3 arriving = vec3(0.0);
 #if NEXT_EVENT
   LightSample light;
-  if (!sampleLight(place, unitFloat(randomWords(numbers, event, kPurposeLight).xy),
+  if (!sampleLight(place, vec3(0.0), unitFloat(randomWords(numbers, event, kPurposeLight).xy),
                    randomWords(numbers, event, kPurposePick), light))
     return arriving;
   arriving = light.value / (4.0 * kPi);

@@ -51,8 +51,8 @@ bool pathCrosses(Surface surface, PathNumbers numbers, float t) {
   if (crosses(surface.position, cosineSample(surface.normal, randomPair(numbers, 1u, kPurposeScatter)), t)) return true;
 #if NEXT_EVENT
   LightSample light;
-  if (sampleLight(surface.position, randomPair(numbers, 1u, kPurposeLight), randomWords(numbers, 1u, kPurposePick),
-                  light) &&
+  if (sampleLight(surface.position, surface.normal, randomPair(numbers, 1u, kPurposeLight),
+                  randomWords(numbers, 1u, kPurposePick), light) &&
       light.pdf > 0.0)
     return light.infinite ? crosses(surface.position, light.direction, 3e38)
                           : crosses(surface.position, light.end - surface.position, 1.0);

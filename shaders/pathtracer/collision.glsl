@@ -59,11 +59,10 @@ bool survives(inout Path path, float u) {
 }
 
 #if NEXT_EVENT
-// Whether the lamp selected by `words` is a point light: its 1/r^2 sampled at collisions alone would have infinite
-// variance.
-bool isPointLike(uvec4 words) {
-  uint i = pick(words);
-  return lights[i].kind == PATH_LIGHT_POINT || lights[i].kind == PATH_LIGHT_SPOT;
+// Whether that is a point light: its 1/r^2 sampled at collisions alone would have infinite variance.
+bool isPointLike(LightPick picked) {
+  uint kind = lights[picked.light].kind;
+  return kind == PATH_LIGHT_POINT || kind == PATH_LIGHT_SPOT;
 }
 
 // A new direction, drawn from the phase function or, occasionally, towards the lamp that the next flight samples. A
@@ -71,9 +70,10 @@ bool isPointLike(uvec4 words) {
 // alone this has infinite variance. Drawing the angle to the lamp uniformly gives a density proportional to 1/h. The
 // farther the lamp, the less often: the flight would rarely get there, and each such choice makes the path's weight a
 // little more uneven.
-void seekLamp(inout Path path, MediumRecord medium, vec3 before, vec3 q, PathNumbers numbers, inout vec3 weight) {
-  uvec4 words = randomWords(numbers, path.event, kPurposePick), choice = randomWords(numbers, path.event, kPurposeSeek);
-  vec3 to = lights[pick(words)].a - path.origin;
+void seekLamp(inout Path path, MediumRecord medium, LightPick picked, vec3 before, vec3 q, PathNumbers numbers,
+              inout vec3 weight) {
+  uvec4 choice = randomWords(numbers, path.event, kPurposeSeek);
+  vec3 to = lights[picked.light].a - path.origin;
   float r = length(to),
         share = 0.25 * exp(-r * min(medium.extinction.r, min(medium.extinction.g, medium.extinction.b)));
   if (!(r > 0.0)) return;
@@ -125,15 +125,17 @@ int scatterInMedium(inout Path path, MediumRecord medium, vec3 inward, PathNumbe
   ++path.scatterings;
 #if NEXT_EVENT
   LightSample light = LightSample(vec3(0.0), 0.0, vec3(0.0), vec3(0.0), false);
+  uvec4 words = randomWords(numbers, path.event, kPurposePick);
+  LightPick picked = LightPick(0u, 1.0, 1.0);
+  if (queuesLight) picked = pickAt(words, path.origin, vec3(0.0));
 #if DISTANCE_WITHOUT_PDF || BOOSTED_INTERACTION
   const bool asked = false;
 #else
-  // a point light was already sampled on the way here
-  bool asked = queuesLight && medium.grid < 0 && isPointLike(randomWords(numbers, path.event, kPurposePick));
+  bool asked = queuesLight && medium.grid < 0 && isPointLike(picked);  // flights sample point lights
 #endif
+  pickedLight = picked.light;
   if (counts(path.scatterings) && queuesLight && !asked &&
-      sampleLight(path.origin, randomPair(numbers, path.event, kPurposeLight),
-                  randomWords(numbers, path.event, kPurposePick), light)) {
+      samplePicked(picked, path.origin, randomPair(numbers, path.event, kPurposeLight), words, light)) {
     vec3 phase = phaseValue(medium, path.direction, light.direction);
     vec3 contribution = phase * light.value;
 #if MIS
@@ -154,7 +156,7 @@ int scatterInMedium(inout Path path, MediumRecord medium, vec3 inward, PathNumbe
   path.direction = phaseSample(medium, before, q, unitFloat(choice.x), randomPair(numbers, path.event, kPurposePhase),
                                weight, path.pdf);
 #if NEXT_EVENT && (POINTS || SPOTS)
-  if (asked) seekLamp(path, medium, before, q, numbers, weight);
+  if (asked) seekLamp(path, medium, picked, before, q, numbers, weight);
 #endif
   // Roulette by the path's value, not by the weight of a direction towards a lamp: that weight is small where the
   // flight finds much light.

@@ -5,6 +5,9 @@
 // BOOSTED_INTERACTION.
 #include "lib/angle.glsl"
 #include "lib/clamped_int.glsl"
+#if WALKS
+#include "lib/packed_normal.glsl"
+#endif
 #include "pathtracer/collision.glsl"
 
 const uint kPurposeFlight = kFreePurpose;
@@ -15,13 +18,14 @@ const uint kPurposeFlight = kFreePurpose;
 // flying that far is the transmittance, except for the channels' differences.
 void addPointLight(inout Path path, MediumRecord medium, vec3 q, float s, PathNumbers numbers) {
   uvec4 words = randomWords(numbers, path.event, kPurposePick);
-  if (!counts(path.scatterings + 1u) || all(equal(medium.albedo, vec3(0.0))) || !isPointLike(words)) return;
+  if (!counts(path.scatterings + 1u) || all(equal(medium.albedo, vec3(0.0)))) return;
+  LightPick picked = pickAt(words, path.origin, vec3(0.0));
+  if (!isPointLike(picked)) return;
+  pickedLight = picked.light;
   LightSample light = LightSample(vec3(0.0), 0.0, vec3(0.0), vec3(0.0), false);
   vec2 xi = randomPair(numbers, path.event, kPurposeLight);
-  if (!sampleLight(path.origin, xi, words, light)) {
-    // A spot may not light the origin; its position is needed all the same.
-    light.end = lights[pick(words)].a;
-  }
+  // A spot may not light the origin; its position is needed all the same.
+  if (!samplePicked(picked, path.origin, xi, words, light)) light.end = lights[picked.light].a;
   vec3 to = light.end - path.origin;
   float a = -dot(to, path.direction);
   vec3 beside = to + a * path.direction;
@@ -32,7 +36,7 @@ void addPointLight(inout Path path, MediumRecord medium, vec3 q, float s, PathNu
   float x = clamp(sine * (h * h + a * a) / (h * cosine - a * sine), 0.0, s);
   float density = h / (angle * (h * h + (x + a) * (x + a)));
   vec3 place = path.origin + x * path.direction;
-  if (!sampleLight(place, xi, words, light)) return;
+  if (!samplePicked(picked, place, xi, words, light)) return;
   vec3 contribution = medium.albedo * medium.extinction * passageWeight(medium, q, x) *
                       phaseValue(medium, path.direction, light.direction) * light.value / density;
   if (any(greaterThan(contribution, vec3(0.0))))
@@ -176,14 +180,6 @@ float clearanceRadius(InteriorRecord interior, vec3 position) {
   vec3 fromCentre;
   uvec4 clearance = clearanceAt(interior, position, fromCentre);
   return uintBitsToFloat(clearance.w) - length(fromCentre);
-}
-
-vec3 unpackNormal(uint word) {
-  vec2 square = unpackSnorm2x16(word);
-  vec3 n = vec3(square, 1.0 - abs(square.x) - abs(square.y));
-  float below = max(-n.z, 0.0);
-  n.xy += mix(vec2(-below), vec2(below), lessThan(n.xy, vec2(0.0)));
-  return normalize(n);
 }
 
 // Whether a flight can meet no triangle, and ends where none is near.

@@ -52,6 +52,7 @@ void addNextEvent(Path path, Surface surface, uint triangle, Bsdf bsdf, float io
 #endif
 
   // One of the candidates.
+  vec3 receiver = bsdf.kind == PATH_DIELECTRIC ? vec3(0.0) : bsdf.normal;
   uvec4 words = randomWords(numbers, path.event, kPurposePick), draw = pcg4d(words);
   vec2 xi = randomPair(numbers, path.event, kPurposeLight);
   bool isByLight = unitFloat(pcg4d(draw).x) < kByLight;
@@ -62,16 +63,16 @@ void addNextEvent(Path path, Surface surface, uint triangle, Bsdf bsdf, float io
   for (uint k = 0u; k < uint(CANDIDATES); ++k) {
     uvec4 pickWords = uvec4(stratifiedWord(words.x, k % kDrawn, kDrawn), words.yzw + k * 0x9e3779b9u);
     vec2 shift = vec2(float(k) / float(CANDIDATES), 0.618034 * float(k));
-    uint asked = k < kDrawn ? pick(pickWords) : 0u;  // the sun last
-    PathLight source = lights[asked];
-    if (!sampleOf(source, surface.position, fract(xi + shift), pickWords, candidate)) continue;
+    LightPick picked = LightPick(0u, 1.0, 1.0);  // the sun last
+    if (k < kDrawn) picked = pickAt(pickWords, surface.position, receiver);
+    if (!samplePicked(picked, surface.position, fract(xi + shift), pickWords, candidate)) continue;
     float candidateSide = dot(candidate.direction, candidate.pdf == 0.0 ? towards : surface.geometricNormal);
     vec3 brought = unblockedLight(path, bsdf, candidate, candidateSide);
     if (all(equal(brought, vec3(0.0)))) continue;
     if (k < kDrawn) brought /= float(kDrawn);
     float weight = clamp(dot(path.throughput, brought), 1e-30, 1e30);  // sums and quotients stay finite
 #if LIGHT_VISIBILITY
-    weight *= reachingShare(cell, source.kind);
+    weight *= reachingShare(cell, lights[picked.light].kind);
 #endif
     ++count;
     sum += weight;
@@ -80,7 +81,7 @@ void addNextEvent(Path path, Surface surface, uint triangle, Bsdf bsdf, float io
     light = candidate;
     side = candidateSide;
     chosenWeight = weight;
-    chosen = asked;
+    chosen = picked.light;
   }
   if (count == 0u) return;
   contribution /= kByLight * chosenWeight / sum + (1.0 - kByLight) / float(count);

@@ -1,9 +1,20 @@
 // Samples one light, chosen by its share of the scene's power, and a point on it: storage block 4. Flags: NEXT_EVENT,
 // SUN, SPOTS, POINTS, EMISSION, ENVIRONMENT_PICTURE. A constant environment is left to scattered rays, which sample it
-// optimally. SUN_APART: the sun is the first light, and is not drawn with the others.
+// optimally. SUN_APART: the sun is the first light, and is not drawn with the others. LIGHT_HIERARCHY: lamps are drawn
+// by what they may bring to a point.
 #include "lib/spot.glsl"
 #include "lib/tangent.glsl"
 #include "lib/round_light.glsl"
+#if NEXT_EVENT
+struct LightPick {
+  uint light;
+  float probability;
+  float balance;  // the probability that weighs a sample against scattered rays, over this one
+};
+#if LIGHT_HIERARCHY
+#include "rays/light_hierarchy.glsl"
+#endif
+#endif
 #if EMISSION && NEXT_EVENT
 #include "lib/spherical_triangle.glsl"
 
@@ -18,17 +29,24 @@ float nearAngle(vec3 a, vec3 ab, vec3 ac) {
   return angle > 1e-3 ? angle : 0.0;
 }
 
-// Density, 1/sr, with which next-event estimation draws a direction to that triangle; angle: by nearAngle.
-float lampDensity(uint triangle, float area, float angle, float distance2, float cosine) {
-  return pickDensity(triangle) * (angle > 0.0 ? area / angle : distance2 / cosine);
+// Density, 1/sr, with which next-event estimation draws a direction to a triangle; perArea: the probability of the
+// triangle over its area; angle: by nearAngle.
+float lampDensity(float perArea, float area, float angle, float distance2, float cosine) {
+  return perArea * (angle > 0.0 ? area / angle : distance2 / cosine);
 }
 
-// The same, of a direction in which a ray from `position` has hit it at the distance t.
+// The same, of a direction in which a ray from `position` has hit it at the distance t, for weighing the two.
 float lampDensityOfHit(uint triangle, vec3 position, float t, float cosine) {
   uint first = triangle * TRIANGLE_WORDS;
   vec3 a = uintBitsToFloat(triangleData[first].xyz), ab = uintBitsToFloat(triangleData[first + 1u].xyz) - a,
        ac = uintBitsToFloat(triangleData[first + 2u].xyz) - a;
-  return lampDensity(triangle, 0.5 * length(cross(ab, ac)), nearAngle(a - position, ab, ac), t * t, cosine);
+  float area = 0.5 * length(cross(ab, ac));
+#if LIGHT_HIERARCHY
+  float perArea = lampProbability(lampLeaf(triangle), position) / area;
+#else
+  float perArea = pickDensity(triangle);
+#endif
+  return lampDensity(perArea, area, nearAngle(a - position, ab, ac), t * t, cosine);
 }
 #endif
 
@@ -49,6 +67,22 @@ uint pickedLight;  // by sampleLight; for callers that need it
 uint pick(uvec4 words) {
   uint i = uint(SUN_APART) + scaledWord(words.x, uint(lights.length() - SUN_APART));
   return unitFloat(words.y) >= lights[i].threshold ? lights[i].alias : i;
+}
+
+// A light for a surface at that position, with that normal; a normal of zero takes light from all sides.
+LightPick pickAt(uvec4 words, vec3 position, vec3 normal) {
+#if LIGHT_HIERARCHY
+#if ENVIRONMENT_PICTURE || (SUN && !SUN_APART)
+  uint i = pick(words);
+  if (lights[i].kind == PATH_LIGHT_SUN || lights[i].kind == PATH_LIGHT_ENVIRONMENT)
+    return LightPick(i, lights[i].probability, 1.0);
+  words.x = words.z;
+#endif
+  return drawLamp(words, position, normal);
+#else
+  uint i = pick(words);
+  return LightPick(i, lights[i].probability, 1.0);
+#endif
 }
 
 // xi: position on the light; words: on the environment. False: that light does not reach the point.
@@ -72,7 +106,13 @@ bool sampleOf(PathLight source, vec3 position, vec2 xi, uvec4 words, out LightSa
     float cosine = dot(light.direction, normalOf(source.p));
     reaches = abs(cosine) > 0.0 && distance2 > 0.0;
     if (reaches) {
-      light.pdf = lampDensity(source.p, 0.5 * length(n), angle, distance2, abs(cosine));
+      float area = 0.5 * length(n);
+#if LIGHT_HIERARCHY
+      float perArea = source.probability / area;
+#else
+      float perArea = pickDensity(source.p);
+#endif
+      light.pdf = lampDensity(perArea, area, angle, distance2, abs(cosine));
       light.value = emissionAt(source.q, source.p, w) / light.pdf;
       light.end = position + away;
     }
@@ -126,10 +166,19 @@ bool sampleOf(PathLight source, vec3 position, vec2 xi, uvec4 words, out LightSa
   return reaches;
 }
 
+// Of the light that pickAt has chosen.
+bool samplePicked(LightPick picked, vec3 position, vec2 xi, uvec4 words, out LightSample light) {
+  PathLight source = lights[picked.light];
+  source.probability = picked.probability;
+  bool reaches = sampleOf(source, position, xi, words, light);
+  if (light.pdf > 0.0) light.pdf = max(light.pdf * picked.balance, 1e-30);
+  return reaches;
+}
+
 // words: select the light.
-bool sampleLight(vec3 position, vec2 xi, uvec4 words, out LightSample light) {
-  pickedLight = pick(words);
-  PathLight source = lights[pickedLight];
-  return sampleOf(source, position, xi, words, light);
+bool sampleLight(vec3 position, vec3 normal, vec2 xi, uvec4 words, out LightSample light) {
+  LightPick picked = pickAt(words, position, normal);
+  pickedLight = picked.light;
+  return samplePicked(picked, position, xi, words, light);
 }
 #endif

@@ -17,9 +17,8 @@ layout(binding = UNIT_VALUE_ATLAS) uniform sampler2DArray valueAtlas;  // for pi
 
 // TRIANGLE_WORDS uvec4 per triangle, floats as their bits:
 // 0: first corner, material; 1: second corner, geometric normal x; 2: third corner, geometric normal y; 3: geometric
-// normal z, the third corner's texture coordinates, pickDensity. With TEXTURES
-//
-// ALPHA_MASKS these are followed by the first and second corners' texture coordinates, with SMOOTH_NORMALS by the
+// normal z, the third corner's texture coordinates, bits of pickDensity (with LIGHT_HIERARCHY lampLeaf). With TEXTURES
+// or ALPHA_MASKS these are followed by the first and second corners' texture coordinates, with SMOOTH_NORMALS by the
 // corners' normals.
 layout(std430, binding = 2) readonly restrict buffer TriangleBlock { uvec4 triangleData[]; };
 layout(std430, binding = 3) readonly restrict buffer MaterialBlock { PathMaterial materials[]; };
@@ -195,8 +194,14 @@ void applyNormalMap(inout Surface surface, uint triangle) {
 #endif
 
 #if EMISSION
-// Probability per unit area that a light sample falls on a point of the triangle.
+// Probability per unit area that a light drawn by power falls on a point of the triangle.
+#if LIGHT_HIERARCHY
+#include "rays/light_leaves.glsl"
+uint lampLeaf(uint triangle) { return triangleData[triangle * TRIANGLE_WORDS + 3u].w; }  // of an emissive triangle
+float pickDensity(uint triangle) { return uintBitsToFloat(lampOfLeaf(lampLeaf(triangle)).y); }
+#else
 float pickDensity(uint triangle) { return uintBitsToFloat(triangleData[triangle * TRIANGLE_WORDS + 3u].w); }
+#endif
 
 vec3 emissionAt(uint material, uint triangle, vec2 barycentrics) {
   vec3 emission = materials[material].emission;

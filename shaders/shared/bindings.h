@@ -40,6 +40,7 @@
 #define UNIT_VISIBLE_NORMAL 4
 
 // Programs that trace rays
+#define UNIT_LIGHT_HIERARCHY 55
 #define UNIT_BVH_NODES 60
 #define UNIT_BVH_TRIANGLES 61
 #define UNIT_VALUE_ATLAS 62

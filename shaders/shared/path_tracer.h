@@ -54,7 +54,9 @@ struct PathConstants {
   ivec4 tile;               // its lower left pixel, its size
   ivec4 picture;            // size of the picture; z: the lanes of the state buffer, at least those of the tile
   int isOrthographic;
-  int padding0, padding1, padding2;
+  float lampPick;           // probability that a light sample goes to the hierarchy of lamps
+  uint lampPairs;           // of siblings in it
+  int padding0;
   vec4 filterQuantiles[16]; // of the pixel filter (engine/base/pixel_filter.hpp), four in each
 };
 SHARED_BLOCK(PathConstants)

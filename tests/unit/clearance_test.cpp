@@ -1,4 +1,5 @@
 // Clearance grids: exact distances, against all triangles one by one and known answers; what counts as dense.
+#include "base/packed_normal.hpp"
 #include "pathtracer/clearance.hpp"
 #include "scene/features.hpp"
 
