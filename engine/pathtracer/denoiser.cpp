@@ -11,7 +11,7 @@ namespace lucerna {
 namespace {
 
 constexpr int kGroup = 8, kFeatureSamples = 32, kSamplesAtOnce = 4;
-constexpr int kRegressors = 11, kWindow = 9;  // of the shaders
+constexpr int kHalves = 2, kRegressors = 11, kWindow = 9;  // of the shaders
 constexpr GLuint kConstantsBinding = 0;
 
 }  // namespace
@@ -88,6 +88,7 @@ Denoiser::Denoiser(gl::ProgramLibrary& programs, const PathTracer& tracer)
     return &programs.loadCompute(name, "pathtracer/denoise_regress.comp",
                                  {{"FIT", number}, {"RADIUS", radius}, {"STRIDE", stride}});
   };
+  readFilm_ = &programs.loadCompute("film of halves", "pathtracer/denoise_film.comp", {});
   narrowFit_ = fit("narrow fit", 0, kNarrow, 1);
   wideFit_ = fit("wide fit", 1, kWide, 1);
   colouredFit_ = fit("coloured fit", 2, kWide, 1);
@@ -101,10 +102,11 @@ Denoiser::Denoiser(gl::ProgramLibrary& programs, const PathTracer& tracer)
 }
 
 void Denoiser::allocate() {
-  const glm::ivec2 size = tracer_.settings().size, halves(size.x, 2 * size.y);
+  const glm::ivec2 size = tracer_.settings().size, halves(size.x, kHalves * size.y);
   const auto plane = [](const char* name, glm::ivec2 texels) { return gl::Texture(name, gl::Format::rgba32f, texels); };
   colours_ = plane("surface colours", size);
   places_ = plane("surface places", size);
+  film_ = plane("film of halves", halves);
   narrow_ = plane("narrow fit", halves);
   wide_ = plane("wide fit", halves);
   coloured_ = plane("coloured fit", halves);
@@ -127,7 +129,7 @@ void Denoiser::traceFeatures() {
   const shared::PathConstants& constants = tracer_.constants();
   constants_.upload(0, sizeof constants, &constants);
   for (int first = 0; first < kFeatureSamples; first += kSamplesAtOnce) {
-    const gl::ComputePass pass("features", gl::Barrier::textureFetch | gl::Barrier::image, gl::Barrier::image);
+    const gl::ComputePass pass("features", gl::Barrier::image, gl::Barrier::image);
     features_->use();
     tracer_.scene().bind();
     constants_.bindUniform(kConstantsBinding);
@@ -143,21 +145,33 @@ void Denoiser::traceFeatures() {
   hasFeatures_ = true;
 }
 
+// Means and variances of the film's pixels, into film_.
+void Denoiser::readFilm() {
+  const gl::ComputePass pass("film of halves", gl::Barrier::image, gl::Barrier::image);
+  readFilm_->use();
+  readFilm_->set("picture", tracer_.settings().size);
+  tracer_.bindMean(0);
+  tracer_.bindSquares(1);
+  film_.bindImage(0, gl::Access::write);
+  pass.dispatch(glm::ivec3(tracer_.settings().size, kHalves), glm::ivec3(kGroup, kGroup, 1));
+}
+
 void Denoiser::regress(const gl::Program& program, const gl::Texture& to, const gl::Texture* guide, int radius) {
   const glm::ivec2 picture = tracer_.settings().size;
-  const gl::ComputePass pass("denoiser fit", gl::Barrier::textureFetch, gl::Barrier::image);
+  const gl::ComputePass pass("denoiser fit", gl::Barrier::textureFetch | gl::Barrier::image, gl::Barrier::image);
   program.use();
   program.set("picture", picture);
   tracer_.bindMean(0);
-  tracer_.bindSquares(1);
-  colours_.bind(2);
-  places_.bind(3);
-  if (guide) guide->bind(4);
   to.bindImage(0, gl::Access::write);
-  const double pixels = (2.0 * radius + 1.0) * (2.0 * radius + 1.0), iterations = (guide ? 4.0 : 2.0) * pixels;
-  chunks_.forEach(picture, iterations * kRegressors, kGroup, [&](glm::ivec2 corner, glm::ivec2 size) {
+  colours_.bindImage(1, gl::Access::read);
+  places_.bindImage(2, gl::Access::read);
+  film_.bindImage(3, gl::Access::read);
+  if (guide) guide->bindImage(4, gl::Access::read);
+  const int layers = guide ? kHalves : 1;  // without a guide an invocation makes both halves
+  const double pixels = layers * (2.0 * radius + 1.0) * (2.0 * radius + 1.0);
+  chunks_.forEach(picture, pixels * kRegressors, kGroup, [&](glm::ivec2 corner, glm::ivec2 size) {
     program.set("firstPixel", corner);
-    pass.dispatch(glm::ivec3(size, 1), glm::ivec3(kGroup, kGroup, 1));
+    pass.dispatch(glm::ivec3(size, layers), glm::ivec3(kGroup, kGroup, 1));
   });
 }
 
@@ -224,6 +238,7 @@ void Denoiser::combine() {
 void Denoiser::denoise() {
   if (tracer_.samples() >= 2) {
     if (!hasFeatures_) traceFeatures();
+    readFilm();
     regress(*narrowFit_, narrow_, nullptr, kNarrow);
     regress(*wideFit_, wide_, nullptr, kWide);
     regress(*colouredFit_, coloured_, &narrow_, kWide);
@@ -266,7 +281,7 @@ DenoisedError Denoiser::error() const {
 std::size_t Denoiser::gpuBytes() const {
   std::size_t bytes = constants_.bytes();
   for (const gl::Texture* texture :
-       {&colours_, &places_, &narrow_, &wide_, &coloured_, &far_, &result_, &errors_, &blocks_, &total_})
+       {&colours_, &places_, &film_, &narrow_, &wide_, &coloured_, &far_, &result_, &errors_, &blocks_, &total_})
     bytes += texture->bytes();
   for (std::size_t i = 0; i < term_.size(); ++i) bytes += term_[i].bytes() + row_[i].bytes();
   return bytes;

@@ -83,16 +83,18 @@ class Denoiser {
  private:
   void allocate();
   void traceFeatures();
+  void readFilm();
   void regress(const gl::Program& program, const gl::Texture& to, const gl::Texture* guide, int radius);
   void sumRadiance();
   void combine();
 
   const PathTracer& tracer_;
-  const gl::Program *features_, *narrowFit_, *wideFit_, *colouredFit_, *farFit_, *terms_, *rows_, *combine_, *rawSums_,
-      *allSums_;
+  const gl::Program *features_, *readFilm_, *narrowFit_, *wideFit_, *colouredFit_, *farFit_, *terms_, *rows_, *combine_,
+      *rawSums_, *allSums_;
   gl::PictureChunks chunks_;
   gl::Buffer constants_;
   gl::Texture colours_, places_;  ///< features
+  gl::Texture film_;  ///< values and variances of both halves
   gl::Texture narrow_, wide_, coloured_, far_;  ///< fits, of both halves
   std::array<gl::Texture, 4> term_, row_;
   gl::Texture result_, errors_, blocks_, total_;

@@ -1,8 +1,7 @@
 // The denoiser's inputs: the film of two independent halves, one above the other, and what pixels show (features.comp).
 // engine/pathtracer/denoiser.hpp explains the method.
-layout(binding = 0) uniform usampler2D filmMean;     // bits of three floats, and the number of samples
-layout(binding = 1) uniform usampler2D filmSquares;  // sums of squared deviations
-uniform ivec2 picture;                               // size
+layout(binding = 0) uniform usampler2D filmMean;  // bits of three floats, and the number of samples
+uniform ivec2 picture;  // size
 
 const int kHalves = 2;
 
@@ -22,13 +21,6 @@ Half halfAt(ivec2 pixel, int which) {
 }
 // The second half never has more samples.
 bool hasBoth(ivec2 pixel) { return texelFetch(filmMean, inHalf(pixel, 1), 0).w > 0u; }
-
-// Variance of a half's mean, summed over the channels; 0 for a single sample.
-float varianceAt(ivec2 pixel, int which) {
-  float samples = float(texelFetch(filmMean, inHalf(pixel, which), 0).w);
-  vec3 squares = max(uintBitsToFloat(texelFetch(filmSquares, inHalf(pixel, which), 0).xyz), vec3(0.0));
-  return samples < 2.0 ? 0.0 : (squares.x + squares.y + squares.z) / (samples * (samples - 1.0));
-}
 
 // Share of the first half in the mean of both.
 float shareOf(float first, float second) { return first / max(first + second, 1.0); }

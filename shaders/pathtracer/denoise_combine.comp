@@ -40,31 +40,35 @@ Sums termsAt(ivec2 at) {
               texelFetch(terms3, at, 0));
 }
 
+// Moves to candidate i from the raw picture, whose share is `rest`, or from candidate j what minimises 2 c.l + l.G l.
+void moveFromRaw(int i, vec4 c, mat4 g, inout vec4 l, inout float rest) {
+  if (!(g[i][i] > 0.0)) return;
+  float gradient = c[i] + dot(g[i], l), moved = clamp(-gradient / g[i][i], -l[i], rest);
+  l[i] += moved;
+  rest = max(rest - moved, 0.0);
+}
+void moveFrom(int j, int i, vec4 c, mat4 g, inout vec4 l) {
+  float curvature = g[i][i] + g[j][j] - 2.0 * g[i][j];
+  if (!(curvature > 1e-6 * (g[i][i] + g[j][j]))) return;
+  float gradient = c[i] - c[j] + dot(g[i] - g[j], l), moved = clamp(-gradient / curvature, -l[i], l[j]);
+  l[i] += moved;
+  l[j] -= moved;
+}
+
 // The shares l that minimise 2 c.l + l.G l where l >= 0 and their sum is at most 1; the rest is the raw picture's.
 // Shares are moved between two of these five at a time, by the exact minimum; as the function is convex, this ends at
-// the minimum.
+// the minimum. Written out, as llvmpipe takes twice as long where components are found by a loop's variable.
 vec4 sharesOf(Sums sums) {
   vec4 c = sums.t0, l = vec4(0.0);
   mat4 g = mat4(sums.t1, vec4(sums.t1.y, sums.t2.xyz), vec4(sums.t1.z, sums.t2.y, sums.t2.w, sums.t3.x),
                 vec4(sums.t1.w, sums.t2.z, sums.t3.xy));
   float rest = 1.0;
-  for (int round = 0; round < kRounds; ++round)
-    for (int i = 0; i < kCandidates; ++i) {
-      if (g[i][i] > 0.0) {
-        float gradient = c[i] + dot(g[i], l), most = rest;
-        float moved = clamp(-gradient / g[i][i], -l[i], most);
-        l[i] += moved;
-        rest = max(rest - moved, 0.0);
-      }
-      for (int j = i + 1; j < kCandidates; ++j) {
-        float curvature = g[i][i] + g[j][j] - 2.0 * g[i][j];
-        if (!(curvature > 1e-6 * (g[i][i] + g[j][j]))) continue;
-        float gradient = c[i] - c[j] + dot(g[i] - g[j], l);
-        float moved = clamp(-gradient / curvature, -l[i], l[j]);
-        l[i] += moved;
-        l[j] -= moved;
-      }
-    }
+  for (int round = 0; round < kRounds; ++round) {
+    moveFromRaw(0, c, g, l, rest), moveFrom(1, 0, c, g, l), moveFrom(2, 0, c, g, l), moveFrom(3, 0, c, g, l);
+    moveFromRaw(1, c, g, l, rest), moveFrom(2, 1, c, g, l), moveFrom(3, 1, c, g, l);
+    moveFromRaw(2, c, g, l, rest), moveFrom(3, 2, c, g, l);
+    moveFromRaw(3, c, g, l, rest);
+  }
   return l;
 }
 
