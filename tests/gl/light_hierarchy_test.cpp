@@ -180,6 +180,23 @@ TEST_F(LightHierarchyGl, TheMeanDoesNotDependOnHowLampsAreDrawn) {
   }
 }
 
+// Two lamps, as the triangles of a panel, are drawn by power; so are those of a published path tracer.
+TEST_F(LightHierarchyGl, WhatASceneDoesNotNeedIsNotThere) {
+  SceneBuilder builder;
+  builder.plate(glm::dvec3(0.0), {0.0, 0.0, 2.0}, {2.0, 0.0, 0.0}, builder.material(glm::vec3(0.5f)));
+  const int light = builder.material(glm::vec3(0.0f));
+  builder.materialAt(light).emission = glm::vec3(1.0f);
+  builder.plate({0.0, 1.0, 0.0}, {0.2, 0.0, 0.0}, {0.0, 0.0, 0.2}, light);
+  const Camera camera = lookingAt({0.0, 0.5, 0.0}, {0.0, 0.0, 0.1});
+  EXPECT_FALSE(tracer(builder.scene(), camera, 8, 1).scene().hasHierarchy());  // the sun is not of it
+  builder.scene().points.emplace_back().position = {0.5, 0.5, 0.0};
+  builder.scene().points.back().intensity = glm::vec3(1.0f);
+  EXPECT_TRUE(tracer(builder.scene(), camera, 8, 1).scene().hasHierarchy());
+  PathTracer::Settings published = sized(8);
+  published.deviations.linearSeeds = true;
+  EXPECT_FALSE(tracer(builder.scene(), camera, published, 1).scene().hasHierarchy());
+}
+
 // Points are sampled along flights, triangles and spots from collisions.
 TEST_F(LightHierarchyGl, LampsInAMediumBringTheSame) {
   Scene scene = ofAllKinds(false, false);
