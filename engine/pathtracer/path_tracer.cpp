@@ -189,6 +189,7 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
     lightVisibility_.emplace(programs, scene, *scene_, constantsBuffer_);
   }
   if (features_.denseMedia) addClearances(scene);
+  if (!settings.deviations.rouletteWithoutDivision) markDarkBodies(scene);
   if (features_.dielectrics || features_.nullBoundaries)
     interiors_ = storageOf("path interiors", boundaries_.interiors, capabilities);
   if (features_.media) {
@@ -273,6 +274,7 @@ gl::ShaderFlags PathTracer::flags() const {
                          {"CANDIDATES", lightCandidates()},
                          {"LIGHT_VISIBILITY", lightVisibility_.has_value()},
                          {"WALKS", features_.denseMedia},
+                         {"DARK_BODIES", darkBodies_},
                          {"HETEROGENEOUS", features_.heterogeneousMedia},
                          {"VOLUME_EMISSION", features_.volumeEmission},
                          {"GLOSSY", features_.conductors || features_.roughDielectrics || scene_->hasCoats()},
@@ -316,6 +318,17 @@ gl::ShaderFlags PathTracer::kernelFlags() const {
                          {"HALVES", settings_.halves},
                          {"SHADOW_AT_ONCE", scene_->rays().sharedStack() == 0 && !hasInteriors()}});
   return all;
+}
+
+void PathTracer::markDarkBodies(const Scene& scene) {
+  const std::vector<Bounds> bounds = boundsOfRanks(boundaries_);
+  for (std::size_t rank = 0; rank < boundaries_.interiors.size(); ++rank) {
+    shared::InteriorRecord& interior = boundaries_.interiors[rank];
+    const bool isDielectric = (boundaries_.dielectricRanks[static_cast<int>(rank / 8)] >> (4 * (rank % 8)) & 15u) != 0;
+    if (!isDielectric || interior.medium < 0) continue;
+    interior.dark = isDark(scene.media[static_cast<std::size_t>(interior.medium)], glm::length(bounds[rank].extent()));
+    darkBodies_ = darkBodies_ || interior.dark != 0;
+  }
 }
 
 void PathTracer::addClearances(const Scene& scene) {

@@ -40,18 +40,30 @@ bool isSmooth(const Scene& scene, const Mesh& mesh) {
   }
   return false;
 }
+double anisotropy(const Medium& medium, int channel) {
+  return medium.phase == PhaseFunction::rayleigh ? 0.0 : static_cast<double>(medium.anisotropy[channel]);
+}
 }  // namespace
 
 bool isDense(const Medium& medium, double extent) {
   if (medium.grid) return false;
   for (int c = 0; c < 3; ++c) {
-    const double scattering = medium.scattering[c], absorption = medium.absorption[c];
-    const double depth = (scattering + absorption) * extent,
-                 g = medium.phase == PhaseFunction::rayleigh ? 0.0 : static_cast<double>(medium.anisotropy[c]);
+    const double scattering = medium.scattering[c], absorption = medium.absorption[c],
+                 depth = (scattering + absorption) * extent;
     // Mean numbers of collisions before absorption, and before leaving by a random walk.
-    if (scattering > 31.0 * absorption && depth * std::max(1.0, depth * (1.0 - g)) > 32.0) return true;
+    if (scattering > 31.0 * absorption && depth * std::max(1.0, depth * (1.0 - anisotropy(medium, c))) > 32.0)
+      return true;
   }
   return false;
+}
+
+bool isDark(const Medium& medium, double extent) {
+  if (medium.grid) return false;
+  for (int c = 0; c < 3; ++c) {
+    const double absorption = medium.absorption[c];
+    if (absorption * extent < 4.0 || absorption < medium.scattering[c] * (1.0 - anisotropy(medium, c))) return false;
+  }
+  return true;
 }
 
 std::vector<std::pair<std::string, bool>> SceneFeatures::named() const {

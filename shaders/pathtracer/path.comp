@@ -109,6 +109,16 @@ bool survivesSurface(inout Path path, float random) {
 #endif
 }
 
+#if DARK_BODIES
+// Whether a path is at the first thing that its sample meets, and that is a dark body. Nothing has shone on its way
+// there, so the part that begins anew adds nothing twice.
+bool isAtDarkBody(Path path, Bsdf bsdf, PathMaterial material) {
+  return path.event == 1u && bsdf.kind == PATH_DIELECTRIC && isSmooth(bsdf) &&
+         interiors[int(material.boundary)].dark != 0 && topRank(path.inside) < 0 && outerMedium < 0 &&
+         all(equal(material.emission, vec3(0.0)));
+}
+#endif
+
 // Handles the hit of the path's ray, and continues the path; false if the path has ended.
 bool handleHit(inout Path path, Hit hit, PathNumbers numbers) {
   // No hit: light from infinity.
@@ -193,8 +203,18 @@ bool handleHit(inout Path path, Hit hit, PathNumbers numbers) {
 #else
   uvec4 choice = randomWords(numbers, path.event, kPurposeChoice);  // for roulette only
 #endif
-  if (!scatter(path, bsdf, surface.geometricNormal, randomPair(numbers, path.event, kPurposeScatter),
-               unitFloat(choice.x)))
+  float lobe = unitFloat(choice.x);
+#if DARK_BODIES
+  if (isAtDarkBody(path, bsdf, material)) {
+    float cosI = clamp(-dot(bsdf.normal, path.direction), 0.0, 1.0), cosT;
+    float reflectance = fresnelDielectric(cosI, bsdf.eta, cosT);
+    if (path.part == kWhole) path.part = kRefracted;
+    bool reflects = path.part == kReflected;
+    path.throughput *= reflects ? reflectance : 1.0 - reflectance;
+    lobe = reflects ? 0.0 : 1.0;  // certain
+  }
+#endif
+  if (!scatter(path, bsdf, surface.geometricNormal, randomPair(numbers, path.event, kPurposeScatter), lobe))
     return false;
 #if TOUCHING
   reloadCoincident();
@@ -206,7 +226,7 @@ bool handleHit(inout Path path, Hit hit, PathNumbers numbers) {
     path.inside = beyond;
   }
 #endif
-  path.chain = path.pdf == 0.0 ? min(path.chain + 1u, 255u) : 0u;
+  path.chain = path.pdf == 0.0 ? min(path.chain + 1u, kMostChain) : 0u;
   if (!survivesSurface(path, unitFloat(choice.y))) return false;
   startAt(path, surface, hit.triangle);
 #if TOUCHING
@@ -510,8 +530,19 @@ void beginPath(out Path path, ivec2 pixel, PathNumbers numbers) {
 
 // kEnds: the sample is complete, and the next path starts. False: the pixel has all its samples.
 bool nextSample(inout Path path, inout Film film, uint where, inout PathNumbers numbers) {
-  uint samples = ++numbers.sampleIndex - uint(tracer.picture.w);
   ivec2 pixel = pixelAt(where + hiddenZero());
+#if DARK_BODIES
+  if (path.part == kRefracted) {
+    vec3 radiance = radianceOf(path);
+    beginPath(path, pixel, numbers);
+    path.part = kReflected;
+    path.radiance = radiance;
+    spill(path);
+    startRadiance(path);
+    return true;
+  }
+#endif
+  uint samples = ++numbers.sampleIndex - uint(tracer.picture.w);
 #if SPILLED
   film = readFilm(pixel);
 #endif

@@ -35,6 +35,9 @@ struct Path {
   uint event;           // index in the sequence of random numbers: one per surface or medium event
   float ior;            // at the ray's origin
   uint chain;           // smooth scatterings in a row so far
+#if DARK_BODIES
+  uint part;            // of its sample: kWhole, kRefracted or kReflected
+#endif
 #if INTERIORS
   uvec4 inside;         // the closed boundaries that contain the path (boundary.glsl)
   // length of the ray before its origin, which is offset from a surface; negative: the amount by which the origin is
@@ -48,6 +51,13 @@ struct Path {
 // more in noise than it saves in time: with 1/4 compared with 1, for the same error, a slab of albedo 0.5 needs a third
 // of the time; the Cornell box and the atrium 0.7 and 0.8 of it by relative error, 0.84 and 0.91 by squared error.
 const float kRouletteBelow = 0.25;
+
+const uint kMostChain = 63u;  // smooth scatterings that are counted
+#if DARK_BODIES
+// A sample that first meets a dark body has two parts, one after the other: what refracts there, and, from the camera
+// anew, what reflects. Drawing one of them would make nearly all of the noise, since little comes back from inside.
+const uint kWhole = 0u, kRefracted = 1u, kReflected = 2u;
+#endif
 
 // In the saved event: a path is waiting to be continued; it has ended, and waits for manifold.comp, or in a walk; the
 // pixel has all its samples. 0: the pixel's pass has not begun.
@@ -81,6 +91,9 @@ Path startPath(ivec2 pixel, PathNumbers numbers) {
   path.event = 0u;
   path.ior = 1.0;
   path.chain = 0u;
+#if DARK_BODIES
+  path.part = kWhole;
+#endif
 #if INTERIORS
   path.inside = cameraInside;
   path.head = 0.0;
@@ -173,7 +186,11 @@ void restorePath(out Path path) {
         w4 = state[wordAt(4u)];
   path = Path(uintBitsToFloat(w0.xyz), w0.w, uintBitsToFloat(w1.xyz), uintBitsToFloat(w1.w), uintBitsToFloat(w2.xyz),
               uintBitsToFloat(w2.w), uintBitsToFloat(w3.xyz), w3.w & 0xffffffu, w4.x & kEventBits,
-              uintBitsToFloat(w4.y), w3.w >> 24u
+              uintBitsToFloat(w4.y), w3.w >> 24u & kMostChain
+#if DARK_BODIES
+              ,
+              w3.w >> 30u
+#endif
 #if INTERIORS
               ,
               state[wordAt(5u)], uintBitsToFloat(w4.z), w4.w
@@ -186,7 +203,12 @@ void spillPath(Path path) {
   state[wordAt(0u)] = uvec4(floatBitsToUint(path.origin), path.skip);
   state[wordAt(1u)] = uvec4(floatBitsToUint(path.direction), floatBitsToUint(path.pdf));
   state[wordAt(2u)] = uvec4(floatBitsToUint(path.throughput), floatBitsToUint(path.travelled));
-  state[wordAt(3u)].w = min(path.scatterings, 0xffffffu) | path.chain << 24u;
+#if DARK_BODIES
+  uint part = path.part << 30u;
+#else
+  const uint part = 0u;
+#endif
+  state[wordAt(3u)].w = min(path.scatterings, 0xffffffu) | path.chain << 24u | part;
 #if INTERIORS
   state[wordAt(4u)] =
       uvec4(path.event | kInFlight, floatBitsToUint(path.ior), floatBitsToUint(path.head), path.face);

@@ -39,7 +39,7 @@ struct InteriorRecord {
   int clearance;    // index of its clearance grid's first cell; -1: none
   float cell;       // edge of that grid's cells
   vec3 min;         // corner of its first cell
-  int padding0;
+  int dark;         // 1: hardly any light that enters comes back (isDark)
   ivec4 size;       // cells, x fastest; w unused
 };
 

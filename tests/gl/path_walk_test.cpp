@@ -35,6 +35,13 @@ Scene milkBall(double ior) {
   return scene;
 }
 
+/// The same of a liquid that is nearly black, whose samples have two parts.
+Scene darkBall() {
+  Scene scene = milkBall(1.33);
+  scene.media = {homogeneous({2.0, 3.0, 4.0}, {5.0, 6.0, 9.0}, 0.7)};
+  return scene;
+}
+
 TEST_F(PathWalkTest, LongSubmissionsLoseNoLoopTurns) {
   // llvmpipe leaves every loop of a shader after 65,535 iterations in all: a submission of many segments must not get
   // there.
@@ -127,18 +134,19 @@ TEST_F(PathWalkTest, WalksWhereLampsAreSoughtAreThePathsThatTraceEveryFlight) {
 
 TEST_F(PathWalkTest, PicturesDoNotDependOnHowSubmissionsAndQueuesDivideThem) {
   // Also of another size than a tile's groups, by passes that double, and continued from a checkpoint.
-  const Scene scene = milkBall(1.33);
-  PathTracer::Settings settings;
-  settings.size = {37, 29};
-  settings.submissionSeconds = 20.0;
-  const Image whole = picture(scene, 7, settings);
-  settings.submissionSeconds = 0.001;
-  PathTracer parts(context(), library(), scene, settings);
-  while (parts.samples() < 3) parts.advance(7);
-  PathTracer continued(context(), library(), scene, settings);
-  continued.resume(parts.checkpoint(), "parts");
-  while (continued.advance(7)) {}
-  EXPECT_EQ(continued.mean().pixels, whole.pixels);
+  for (const Scene& scene : {milkBall(1.33), darkBall()}) {
+    PathTracer::Settings settings;
+    settings.size = {37, 29};
+    settings.submissionSeconds = 20.0;
+    const Image whole = picture(scene, 7, settings);
+    settings.submissionSeconds = 0.001;
+    PathTracer parts(context(), library(), scene, settings);
+    while (parts.samples() < 3) parts.advance(7);
+    PathTracer continued(context(), library(), scene, settings);
+    continued.resume(parts.checkpoint(), "parts");
+    while (continued.advance(7)) {}
+    EXPECT_EQ(continued.mean().pixels, whole.pixels);
+  }
 }
 
 /// Lamps, a grid of smoke and rough metal and glass, beside each other.
@@ -177,9 +185,9 @@ TEST_F(PathWalkTest, TheKernelForGpusDrawsTheSamePicture) {
   Scene room;
   room.environment = milk.environment;
   room.cameras = milk.cameras;
-  Scene smoke = smokyRoom();
+  Scene smoke = smokyRoom(), dark = darkBall();
   // Milk's programs are two of the largest.
-  std::vector<Scene*> scenes{&room, &smoke};
+  std::vector<Scene*> scenes{&room, &smoke, &dark};
   if (longTests()) scenes.push_back(&milk);
   for (Scene* scene : scenes) {
     scene->materials.emplace_back().diffuse = glm::vec3(0.5f);

@@ -7,6 +7,7 @@
 // samples for independent, and are too large where they are spread by low-discrepancy points.) A figure passes
 // within 3.5 of its standard errors; seeds are fixed.
 #include "support/media_fixture.hpp"
+#include "support/media_reference.hpp"
 #include "support/media_scenes.hpp"
 
 #include <fmt/format.h>
@@ -84,6 +85,21 @@ TEST_F(MediaPrecision, SlabsReflectAndTransmitAsTabled) {
     sum += seconds_;
   }
   std::printf("%.1f s of processor time\n", sum);
+}
+
+TEST_F(MediaPrecision, BothWaysFromADarkBodyAreInEverySample) {
+  // Nothing comes back from black glass, so a sample of it under a sky of 1 is Fresnel's reflectance, without noise.
+  // The slabs above that absorb half and more at a collision are dark bodies too: light gets through these.
+  Scene scene;
+  scene.media = {homogeneous(glm::dvec3(0.0), glm::dvec3(1000.0), 0.0)};
+  addBox(scene, {-30.0, -1.0, -30.0}, {30.0, 0.0, 30.0}, addBoundary(scene, Bsdf::dielectric, 1.5, 0));
+  scene.environment = constantEnvironment(1.0);
+  for (const double mu : {1.0, 0.5, 0.1}) {
+    const glm::dvec3 at(0.013, 0.0, 0.007);
+    scene.cameras = {cameraAt(at + glm::dvec3(std::sqrt(1.0 - mu * mu), mu, 0.0), at)};
+    const double exact = reference::fresnel(mu, 1.0 / 1.5);
+    for (const glm::vec3& pixel : picture(scene, 1).pixels) EXPECT_NEAR(pixel.y, exact, 1e-3 * exact) << mu;
+  }
 }
 
 TEST_F(MediaPrecision, NoCollisionRoundsThroughAFace) {
