@@ -230,10 +230,12 @@ void advanceRay(inout BvhTraversal s, bool any) {
   uint leaves = hits & 0x00ffffffu;  // triangles to test, counted from the node's first
   while (leaves != 0u) {  // ends: each iteration clears the highest of 24 bits
     int k = bvhHighest(leaves);
+    // llvmpipe runs the loop at least once and reads for waiting lanes too: for those, texel 0, which is in its caches.
+    // min and not a branch, which compilers leave out since the loop has ended for such lanes.
+    int triangle = int(min(leaves, 1u)) * (1 + BVH_TRIANGLE_TEXELS * (int(n1.y) + k));
     leaves &= ~(1u << k);
     ++s.tested;
     ++loopIterations;
-    int triangle = 1 + BVH_TRIANGLE_TEXELS * (int(n1.y) + k);
     uvec4 a = texelFetch(bvhTriangles, triangle);
     vec4 b = uintBitsToFloat(texelFetch(bvhTriangles, triangle + 1)),
          c = uintBitsToFloat(texelFetch(bvhTriangles, triangle + 2));
