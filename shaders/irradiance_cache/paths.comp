@@ -313,7 +313,7 @@ vec3 followPath(Surface surface, uint triangle, PathNumbers numbers) {
 #endif
     BvhTraversal traversal = beginRay(traced, skip);
     if (isShadow) traversal.lampEnd = traced.tMax;
-    for (int left = bvhNodeCount(); left > 0 && !isDone(traversal); --left) advanceRay(traversal, isShadow);
+    for (int left = bvhStepCount(); left > 0 && !isDone(traversal); --left) advanceRay(traversal, isShadow);
     if (isShadow) {
       if (traversal.hit.triangle == kNoHit) radiance += shadow.light;
       shadow.waits = false;

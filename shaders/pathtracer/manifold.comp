@@ -245,7 +245,7 @@ Way followWay(Vertex vertex, uint skip, inout vec3 direction, Target target, uve
   for (uint k = 0u; k < kMostHits; ++k) {
     Ray ray = Ray(way.tube.origin, start, way.tube.direction, 3e38);
     BvhTraversal traversal = beginRay(ray, skip);
-    for (int left = bvhNodeCount(); left > 0 && !isDone(traversal); --left) advanceRay(traversal, false);
+    for (int left = bvhStepCount(); left > 0 && !isDone(traversal); --left) advanceRay(traversal, false);
     Hit hit = finishRay(traversal, ray.direction);
     way.reach = target.infinite ? 3e38 : dot(target.place - ray.origin, ray.direction);
     bool hits = hit.triangle != kNoHit &&

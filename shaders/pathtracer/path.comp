@@ -636,7 +636,7 @@ void main() {
 #else
       bool any = job == kShadowRay;
 #endif
-      for (int left = bvhNodeCount(); left > 0 && !isDone(traversal); --left) advanceRay(traversal, any);
+      for (int left = bvhStepCount(); left > 0 && !isDone(traversal); --left) advanceRay(traversal, any);
       Hit hit = traversal.hit;
       if (!any) hit = finishRay(traversal, ray.direction);
       forget(where, numbers);

@@ -17,7 +17,7 @@ vec3 bvhNormal(int texel) {
 
 PatchMet firstMet(Ray ray, uint skip) {
   BvhTraversal s = beginRay(ray, skip);
-  for (int left = bvhNodeCount(); left > 0 && !isDone(s); --left) advanceRay(s, false);
+  for (int left = bvhStepCount(); left > 0 && !isDone(s); --left) advanceRay(s, false);
   if (s.hit.triangle == kNoHit) return PatchMet(kNoHit, false, 0);
   int texel = int(s.hit.triangle);
   return PatchMet(texelFetch(bvhTriangles, texel).w & BVH_TRIANGLE_ID_MASK, dot(bvhNormal(texel), ray.direction) < 0.0,

@@ -152,7 +152,8 @@ struct BvhTraversal {
   // those that are nodes
   uvec2 siblings;
   int top;         // of the stack; below zero: the ray is done
-  int tested;      // triangles, for statistics
+  uint leaves, firstTriangle;  // triangles of the node to test, a bit each, counted from its first
+  int visited, tested;         // nodes and triangles, for statistics
 };
 
 // Flag SHARED_STACK: number of entries of a stack in shared memory, the hierarchy's depth (compute programs only, after
@@ -171,8 +172,11 @@ int bvhStackPlace(int entry) { return entry; }
 // after 65,535 iterations of a vector of lanes).
 uint loopIterations = 0u;
 
-// A traversal visits no node twice, so this bounds its iterations whatever the nodes hold.
-int bvhNodeCount() { return textureSize(bvhNodes) / BVH_NODE_TEXELS; }
+// A traversal visits no node twice and tests the triangles of no leaf twice, so this bounds its steps whatever the
+// nodes hold.
+int bvhStepCount() {
+  return textureSize(bvhNodes) / BVH_NODE_TEXELS + textureSize(bvhTriangles) / BVH_TRIANGLE_TEXELS;
+}
 
 // Whether a ray is one: all finite, and with a direction. Others hit nothing, but their comparisons would not say so:
 // min and max drop NaN on GPUs, and a ray of NaN would visit the whole hierarchy.
@@ -184,7 +188,7 @@ bool isRay(Ray ray) {
 BvhTraversal beginRay(Ray ray, uint skipTriangle) {
   // The root is treated as the only child of a virtual parent, in the slot that is visited first.
   return BvhTraversal(bvhPrepare(ray), ray.tMin, 3e38, largestOf(ray.origin), skipTriangle,
-                      Hit(ray.tMax, kNoHit, vec2(0.0)), uvec2(0u, 0x80000000u), isRay(ray) ? 0 : -1, 0);
+                      Hit(ray.tMax, kNoHit, vec2(0.0)), uvec2(0u, 0x80000000u), isRay(ray) ? 0 : -1, 0u, 0u, 0, 0);
 }
 
 // A shadow ray, which ends on a lamp at tMax.
@@ -196,9 +200,8 @@ BvhTraversal beginRayToLamp(Ray ray, uint skipTriangle) {
 
 bool isDone(BvhTraversal s) { return s.top < 0; }
 
-// Visits one node and tests the triangles of its leaves. any: stop at the first hit.
-void advanceRay(inout BvhTraversal s, bool any) {
-  ++loopIterations;
+void bvhVisitNode(inout BvhTraversal s) {
+  ++s.visited;
   int place = bvhHighest(s.siblings.y >> 24);
   s.siblings.y &= ~(0x01000000u << place);
   int node = BVH_NODE_TEXELS *
@@ -227,28 +230,49 @@ void advanceRay(inout BvhTraversal s, bool any) {
   hits |= bvhHitFour(bvhChoose(low47, high47, s.ray.negative), bvhChoose(high47, low47, s.ray.negative), scale,
                      base - error, base + error, s.tMin, s.hit.t, n1.w, s.ray.octant);
   s.siblings = uvec2(n1.x, (hits & 0xff000000u) | (n0.w >> 24));
-  uint leaves = hits & 0x00ffffffu;  // triangles to test, counted from the node's first
-  while (leaves != 0u) {  // ends: each iteration clears the highest of 24 bits
-    int k = bvhHighest(leaves);
-    leaves &= ~(1u << k);
-    ++s.tested;
-    ++loopIterations;
-    int triangle = 1 + BVH_TRIANGLE_TEXELS * (int(n1.y) + k);
-    uvec4 a = texelFetch(bvhTriangles, triangle);
-    vec4 b = uintBitsToFloat(texelFetch(bvhTriangles, triangle + 1)),
-         c = uintBitsToFloat(texelFetch(bvhTriangles, triangle + 2));
-    float t;
-    vec2 barycentrics;
-    uint id = a.w & BVH_TRIANGLE_ID_MASK;
-    if (bvhHitTriangle(s.ray, uintBitsToFloat(a.xyz), b.xyz, c.xyz, a.w, vec2(b.w, c.w), s.tMin, s.hit.t, s.lampEnd,
-                       s.slack, t, barycentrics) &&
-        id != s.skipTriangle && !bvhMissesMask(a.w, barycentrics)) {
-      s.hit = Hit(t, uint(triangle), barycentrics);
-      if (any) leaves = 0u;
-    }
+  s.leaves = hits & 0x00ffffffu;
+  s.firstTriangle = n1.y;
+}
+
+// Tests the next triangle of the node. any: the first hit ends the ray.
+void bvhTestTriangle(inout BvhTraversal s, bool any) {
+  ++s.tested;
+  int k = bvhHighest(s.leaves);
+  // llvmpipe reads for lanes that wait too: for those texel 0, which is in its caches. min and not a branch, which
+  // compilers leave out where such lanes do not come.
+  int triangle = int(min(s.leaves, 1u)) * (1 + BVH_TRIANGLE_TEXELS * (int(s.firstTriangle) + k));
+  s.leaves &= ~(1u << k);
+  uvec4 a = texelFetch(bvhTriangles, triangle);
+  vec4 b = uintBitsToFloat(texelFetch(bvhTriangles, triangle + 1)),
+       c = uintBitsToFloat(texelFetch(bvhTriangles, triangle + 2));
+  float t;
+  vec2 barycentrics;
+  uint id = a.w & BVH_TRIANGLE_ID_MASK;
+  if (bvhHitTriangle(s.ray, uintBitsToFloat(a.xyz), b.xyz, c.xyz, a.w, vec2(b.w, c.w), s.tMin, s.hit.t, s.lampEnd,
+                     s.slack, t, barycentrics) &&
+      id != s.skipTriangle && !bvhMissesMask(a.w, barycentrics)) {
+    s.hit = Hit(t, uint(triangle), barycentrics);
+    if (any) s.leaves = 0u;
   }
+}
+
+// One step. On GPUs: visits a node and tests its triangles. On software renderers: tests one triangle, after visiting
+// a node where none was left. There all lanes do what one of them does, so a lane visits its next node while others
+// test the rest of their triangles. any: stop at the first hit.
+void advanceRay(inout BvhTraversal s, bool any) {
+  ++loopIterations;
+#if SHARED_STACK
+  bvhVisitNode(s);
+  while (s.leaves != 0u) {  // ends: each iteration clears the highest of 24 bits
+    ++loopIterations;
+    bvhTestTriangle(s, any);
+  }
+#else
+  if (s.leaves == 0u) bvhVisitNode(s);
+  if (s.leaves != 0u) bvhTestTriangle(s, any);
+#endif
   bool ended = any && s.hit.triangle != kNoHit;
-  if (s.siblings.y <= 0x00ffffffu || ended) {
+  if (s.leaves == 0u && (s.siblings.y <= 0x00ffffffu || ended)) {
     s.top = ended ? -1 : s.top - 1;
     if (s.top >= 0) s.siblings = uvec2(bvhStackX[bvhStackPlace(s.top)], bvhStackY[bvhStackPlace(s.top)]);
   }
@@ -319,13 +343,13 @@ Hit finishRay(BvhTraversal s, vec3 direction) {
 // The nearest hit; its triangle is kNoHit if there is none. skipTriangle: the triangle the ray starts on, or kNoHit.
 Hit closestHit(Ray ray, uint skipTriangle) {
   BvhTraversal s = beginRay(ray, skipTriangle);
-  for (int left = bvhNodeCount(); left > 0 && !isDone(s); --left) advanceRay(s, false);
+  for (int left = bvhStepCount(); left > 0 && !isDone(s); --left) advanceRay(s, false);
   return finishRay(s, ray.direction);
 }
 
 // Whether anything is hit at all.
 bool anyHit(BvhTraversal s) {
-  for (int left = bvhNodeCount(); left > 0 && !isDone(s); --left) advanceRay(s, true);
+  for (int left = bvhStepCount(); left > 0 && !isDone(s); --left) advanceRay(s, true);
   return s.hit.triangle != kNoHit;
 }
 bool anyHit(Ray ray, uint skipTriangle) { return anyHit(beginRay(ray, skipTriangle)); }

@@ -22,10 +22,9 @@ void main() {
   start.origin = offsetRay(start.origin, normalize(start.direction));
 #endif
 #if COUNT_WORK
-  int nodes = 0;
   BvhTraversal ray = beginRay(start, skipTriangles[i]);
-  for (; nodes < bvhNodeCount() && !isDone(ray); ++nodes) advanceRay(ray, ANY_HIT != 0);
-  hits[i] = Hit(float(nodes), ray.hit.triangle, vec2(ray.tested, 0.0));
+  for (int left = bvhStepCount(); left > 0 && !isDone(ray); --left) advanceRay(ray, ANY_HIT != 0);
+  hits[i] = Hit(float(ray.visited), ray.hit.triangle, vec2(ray.tested, 0.0));
 #elif ANY_HIT
   hits[i] = Hit(0.0, anyHit(start, skipTriangles[i]) ? 0u : kNoHit, vec2(0.0));
 #else

@@ -270,7 +270,7 @@ std::vector<std::size_t> bareConversions(const Shader& shader, const Types& type
 
 // Whether an expression follows from constants, uniforms and sizes of buffers alone.
 bool isBound(const Tokens& tokens, std::size_t begin, std::size_t end, const Types& types) {
-  static const std::set<std::string> known{"int", "uint", "textureSize", "imageSize", "length", "bvhNodeCount"};
+  static const std::set<std::string> known{"int", "uint", "textureSize", "imageSize", "length", "bvhStepCount"};
   static const std::regex constant("k[A-Z]\\w*|[A-Z][A-Z0-9_]*|gl_\\w+");
   for (std::size_t i = begin; i < end; ++i) {
     const std::string& text = tokens[i].text;
