@@ -31,16 +31,24 @@ void main() {
   for (uint k = 0u; k < kLightsPerPoint; ++k) {
     uvec4 choice = pcg4d(uvec4(point, k, 1u, 0u));
     choice.x = stratifiedWord(words.x, k, kLightsPerPoint);
-    LightPick picked = LightPick(0u, 1.0, 1.0);  // the sun half of the time
-    if (SUN_APART == 0 || (k & 1u) != 0u) picked = pickAt(choice, surface.position, vec3(0.0));
+    vec2 xi = unitFloat(pcg4d(uvec4(point, k, 2u, 0u)).xy);
+    LightPick picked = pickAt(choice, surface.position, vec3(0.0));
     LightSample light;
-    if (!samplePicked(picked, surface.position, unitFloat(pcg4d(uvec4(point, k, 2u, 0u)).xy), choice, light)) continue;
+    bool reaches = samplePicked(picked, surface.position, xi, choice, light);
+    uint kind = kindOfLight(lights[picked.light].kind);
+#if SUN_APART
+    if ((k & 1u) == 0u) {  // half of the time
+      reaches = sampleSun(lights[0], xi, light);
+      kind = kindOfLight(PATH_LIGHT_SUN);
+    }
+#endif
+    if (!reaches) continue;
     // On the side that the light comes from. In the surface's plane it brings nothing, and rounding decides its ray.
     float cosine = dot(light.direction, surface.geometricNormal);
     if (abs(cosine) < kGrazing) continue;
     vec3 start = offsetRay(surface.position, sign(cosine) * surface.geometricNormal, surface.magnitude);
     Ray ray = Ray(start, 0.0, light.infinite ? light.direction : light.end - start, light.infinite ? 3e38 : 1.0);
-    uint counter = 2u * (cell * kLightKinds + kindOfLight(lights[picked.light].kind));
+    uint counter = 2u * (cell * kLightKinds + kind);
     atomicAdd(counts[counter], 1u);
     if (!anyHitToLamp(ray, hit.triangle)) atomicAdd(counts[counter + 1u], 1u);
   }

@@ -18,6 +18,8 @@ float reachingShare(uint cell, uint kind) {
   float tried = float(texelFetch(lightCounts, at).x), reached = float(texelFetch(lightCounts, at + 1).x);
   return (reached + 0.01) / (tried + 0.02);
 }
+#else
+float reachingShare(uint cell, uint kind) { return 1.0; }
 #endif
 
 // What a light would bring if nothing blocked it; 0 behind the surface, and in its plane, where rounding would decide
@@ -38,6 +40,26 @@ vec3 unblockedLight(Path path, Bsdf bsdf, LightSample light, float side) {
   return contribution;
 }
 
+struct Choice {
+  vec3 contribution;
+  LightSample light;
+  float side, weight, sum;  // sum: of all candidates' weights so far
+  uint count, number;       // of candidates so far; of the chosen light
+};
+
+// Takes a candidate in place of the one chosen so far, in proportion to what they would bring, or by number. side: of the
+// surface; among: how many candidates of its kind there are; share: of such light that reaches the surface.
+void consider(inout Choice choice, Path path, Bsdf bsdf, LightSample candidate, uint number, float side, float among,
+              float share, float u, bool isByLight) {
+  vec3 brought = unblockedLight(path, bsdf, candidate, side) / among;
+  if (all(equal(brought, vec3(0.0)))) return;
+  float weight = share * clamp(dot(path.throughput, brought), 1e-30, 1e30);  // sums and quotients stay finite
+  ++choice.count;
+  choice.sum += weight;
+  if (u * (isByLight ? choice.sum : float(choice.count)) >= (isByLight ? weight : 1.0)) return;
+  choice = Choice(brought, candidate, side, weight, choice.sum, choice.count, number);
+}
+
 // iorBeyond, beyond: refractive index behind the surface, and the closed boundaries that contain that side.
 void addNextEvent(Path path, Surface surface, uint triangle, Bsdf bsdf, float iorBeyond, uvec4 beyond,
                   PathNumbers numbers) {
@@ -49,6 +71,8 @@ void addNextEvent(Path path, Surface surface, uint triangle, Bsdf bsdf, float io
 #endif
 #if LIGHT_VISIBILITY
   uint cell = lightCellBefore(surface);
+#else
+  const uint cell = 0u;
 #endif
 
   // One of the candidates.
@@ -56,36 +80,29 @@ void addNextEvent(Path path, Surface surface, uint triangle, Bsdf bsdf, float io
   uvec4 words = randomWords(numbers, path.event, kPurposePick), draw = pcg4d(words);
   vec2 xi = randomPair(numbers, path.event, kPurposeLight);
   bool isByLight = unitFloat(pcg4d(draw).x) < kByLight;
-  LightSample light = LightSample(vec3(0.0), 0.0, vec3(0.0), vec3(0.0), false), candidate = light;
-  vec3 contribution = vec3(0.0);
-  float side = 0.0, chosenWeight = 1.0, sum = 0.0;
-  uint count = 0u, chosen = 0u;
-  for (uint k = 0u; k < uint(CANDIDATES); ++k) {
-    uvec4 pickWords = uvec4(stratifiedWord(words.x, k % kDrawn, kDrawn), words.yzw + k * 0x9e3779b9u);
+  Choice choice = Choice(vec3(0.0), LightSample(vec3(0.0), 0.0, vec3(0.0), vec3(0.0), false), 0.0, 1.0, 0.0, 0u, 0u);
+  for (uint k = 0u; k < kDrawn; ++k) {
+    uvec4 pickWords = uvec4(stratifiedWord(words.x, k, kDrawn), words.yzw + k * 0x9e3779b9u);
     vec2 shift = vec2(float(k) / float(CANDIDATES), 0.618034 * float(k));
-    LightPick picked = LightPick(0u, 1.0, 1.0);  // the sun last
-    if (k < kDrawn) picked = pickAt(pickWords, surface.position, receiver);
+    LightPick picked = pickAt(pickWords, surface.position, receiver);
+    LightSample candidate;
     if (!samplePicked(picked, surface.position, fract(xi + shift), pickWords, candidate)) continue;
-    float candidateSide = dot(candidate.direction, candidate.pdf == 0.0 ? towards : surface.geometricNormal);
-    vec3 brought = unblockedLight(path, bsdf, candidate, candidateSide);
-    if (all(equal(brought, vec3(0.0)))) continue;
-    if (k < kDrawn) brought /= float(kDrawn);
-    float weight = clamp(dot(path.throughput, brought), 1e-30, 1e30);  // sums and quotients stay finite
-#if LIGHT_VISIBILITY
-    weight *= reachingShare(cell, lights[picked.light].kind);
-#endif
-    ++count;
-    sum += weight;
-    if (unitFloat(draw[k & 3u]) * (isByLight ? sum : float(count)) >= (isByLight ? weight : 1.0)) continue;
-    contribution = brought;
-    light = candidate;
-    side = candidateSide;
-    chosenWeight = weight;
-    chosen = picked.light;
+    float side = dot(candidate.direction, candidate.pdf == 0.0 ? towards : surface.geometricNormal);
+    consider(choice, path, bsdf, candidate, picked.light, side, float(kDrawn),
+             reachingShare(cell, lights[picked.light].kind), unitFloat(draw[k & 3u]), isByLight);
   }
-  if (count == 0u) return;
-  contribution /= kByLight * chosenWeight / sum + (1.0 - kByLight) / float(count);
-  pickedLight = chosen;
+#if SUN_APART
+  LightSample sun;
+  sampleSun(lights[0], fract(xi + vec2(float(kDrawn) / float(CANDIDATES), 0.618034 * float(kDrawn))), sun);
+  consider(choice, path, bsdf, sun, 0u, dot(sun.direction, towards), 1.0, reachingShare(cell, PATH_LIGHT_SUN),
+           unitFloat(draw[kDrawn & 3u]), isByLight);
+#endif
+  if (choice.count == 0u) return;
+  float probability = kByLight * choice.weight / choice.sum + (1.0 - kByLight) / float(choice.count);
+  vec3 contribution = choice.contribution / probability;
+  LightSample light = choice.light;
+  float side = choice.side;
+  pickedLight = choice.number;
 
   // Its ray.
   vec3 start = beside(surface, side > 0.0 ? surface.geometricNormal : -surface.geometricNormal);

@@ -85,7 +85,20 @@ LightPick pickAt(uvec4 words, vec3 position, vec3 normal) {
 #endif
 }
 
-// xi: position on the light; words: on the environment. False: that light does not reach the point.
+#if SUN
+// xi: position on its disc. True: the sun reaches every point.
+bool sampleSun(PathLight sun, vec2 xi, out LightSample light) {
+  light = LightSample(-sun.b, 0.0, sun.c / sun.probability, vec3(0.0), true);
+  if (sun.size > 0.0) {  // E = L pi sin^2 of the half angle, of which samples take L 2 pi (1 - cos)
+    light.direction = coneSample(light.direction, sun.size, xi);
+    light.value *= 2.0 / (2.0 - sun.size);
+  }
+  return true;
+}
+#endif
+
+// xi: position on the light; words: on the environment. False: that light does not reach the point. With SUN_APART not
+// of the sun.
 bool sampleOf(PathLight source, vec3 position, vec2 xi, uvec4 words, out LightSample light) {
   light = LightSample(vec3(0.0), 0.0, vec3(0.0), source.a, false);
   bool reaches = false;
@@ -128,17 +141,8 @@ bool sampleOf(PathLight source, vec3 position, vec2 xi, uvec4 words, out LightSa
     reaches = light.pdf > 0.0;
   }
 #endif
-#if SUN
-  if (source.kind == PATH_LIGHT_SUN) {
-    light.direction = -source.b;
-    light.infinite = true;
-    light.value = source.c / source.probability;
-    if (source.size > 0.0) {  // E = L pi sin^2 of the half angle, of which samples take L 2 pi (1 - cos)
-      light.direction = coneSample(light.direction, source.size, xi);
-      light.value *= 2.0 / (2.0 - source.size);
-    }
-    reaches = true;
-  }
+#if SUN && !SUN_APART
+  if (source.kind == PATH_LIGHT_SUN) reaches = sampleSun(source, xi, light);
 #endif
 #if SPOTS || POINTS
   if (source.kind == PATH_LIGHT_POINT || source.kind == PATH_LIGHT_SPOT) {

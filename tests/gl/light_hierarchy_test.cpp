@@ -51,7 +51,7 @@ class LightHierarchyGl : public PathTest {
 
 TEST_F(LightHierarchyGl, DrawsFollowTheReference) {
   constexpr std::size_t kDraws = 32768;
-  for (const std::size_t count : {2, 3, 50, 400}) {
+  for (const unsigned count : {2u, 3u, 50u, 400u}) {
     const LightHierarchy hierarchy = lightHierarchy(mixedLamps(count));
     std::map<std::uint32_t, std::size_t> leafOf;
     for (std::size_t leaf = 0; leaf < count; ++leaf) leafOf[hierarchy.lights[leaf]] = leaf;

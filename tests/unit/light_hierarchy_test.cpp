@@ -47,7 +47,7 @@ int checkPair(const LightHierarchy& hierarchy, const std::vector<LocalLamp>& lam
 }
 
 TEST(LightHierarchy, NodesHoldTheirLamps) {
-  for (const std::size_t count : {2, 3, 7, 64, 1000}) {
+  for (const unsigned count : {2u, 3u, 7u, 64u, 1000u}) {
     const std::vector<LocalLamp> lamps = mixedLamps(count);
     const LightHierarchy hierarchy = lightHierarchy(lamps);
     ASSERT_EQ(hierarchy.pairs, count - 1);
