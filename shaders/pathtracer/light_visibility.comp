@@ -38,7 +38,8 @@ void main() {
     uint kind = kindOfLight(lights[picked.light].kind);
 #if SUN_APART
     if ((k & 1u) == 0u) {  // half of the time
-      reaches = sampleSun(lights[0], xi, light);
+      PathLight sun = lights[0];
+      reaches = sampleSun(sun, xi, light);
       kind = kindOfLight(PATH_LIGHT_SUN);
     }
 #endif

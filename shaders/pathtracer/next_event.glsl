@@ -47,8 +47,8 @@ struct Choice {
   uint count, number;       // of candidates so far; of the chosen light
 };
 
-// Takes a candidate in place of the one chosen so far, in proportion to what they would bring, or by number. side: of the
-// surface; among: how many candidates of its kind there are; share: of such light that reaches the surface.
+// Takes a candidate in place of the one chosen so far, in proportion to what they would bring, or by number. side: of
+// the surface; among: how many candidates of its kind there are; share: of such light that reaches the surface.
 void consider(inout Choice choice, Path path, Bsdf bsdf, LightSample candidate, uint number, float side, float among,
               float share, float u, bool isByLight) {
   vec3 brought = unblockedLight(path, bsdf, candidate, side) / among;
@@ -92,10 +92,11 @@ void addNextEvent(Path path, Surface surface, uint triangle, Bsdf bsdf, float io
              reachingShare(cell, lights[picked.light].kind), unitFloat(draw[k & 3u]), isByLight);
   }
 #if SUN_APART
-  LightSample sun;
-  sampleSun(lights[0], fract(xi + vec2(float(kDrawn) / float(CANDIDATES), 0.618034 * float(kDrawn))), sun);
-  consider(choice, path, bsdf, sun, 0u, dot(sun.direction, towards), 1.0, reachingShare(cell, PATH_LIGHT_SUN),
-           unitFloat(draw[kDrawn & 3u]), isByLight);
+  PathLight sun = lights[0];
+  LightSample candidate;
+  sampleSun(sun, fract(xi + vec2(float(kDrawn) / float(CANDIDATES), 0.618034 * float(kDrawn))), candidate);
+  consider(choice, path, bsdf, candidate, 0u, dot(candidate.direction, towards), 1.0,
+           reachingShare(cell, PATH_LIGHT_SUN), unitFloat(draw[kDrawn & 3u]), isByLight);
 #endif
   if (choice.count == 0u) return;
   float probability = kByLight * choice.weight / choice.sum + (1.0 - kByLight) / float(choice.count);
