@@ -51,14 +51,17 @@ class LightHierarchyGl : public PathTest {
 
 TEST_F(LightHierarchyGl, DrawsFollowTheReference) {
   constexpr std::size_t kDraws = 32768;
-  for (const unsigned count : {2u, 3u, 50u, 400u}) {
-    const LightHierarchy hierarchy = lightHierarchy(mixedLamps(count));
+  for (const auto& [count, scale] : {std::pair(2u, 1.0), {3u, 1.0}, {50u, 1e-6}, {50u, 1e6}, {400u, 1.0}}) {
+    std::vector<LocalLamp> lamps = mixedLamps(count);
+    for (LocalLamp& lamp : lamps) lamp.min *= scale, lamp.max *= scale;
+    const LightHierarchy hierarchy = lightHierarchy(lamps);
     std::map<std::uint32_t, std::size_t> leafOf;
     for (std::size_t leaf = 0; leaf < count; ++leaf) leafOf[hierarchy.lights[leaf]] = leaf;
-    for (const auto& [position, normal] : {std::pair(glm::dvec3(3.0, 0.0, 4.0), glm::dvec3(0.0, 1.0, 0.0)),
+    for (const auto& [place, normal] : {std::pair(glm::dvec3(3.0, 0.0, 4.0), glm::dvec3(0.0, 1.0, 0.0)),
                                            {{9.0, 1.5, 9.0}, {0.6, 0.0, -0.8}},
                                            {{9.0, 1.5, 9.0}, {0.0, 0.0, 0.0}},
                                            {{-50.0, 30.0, 0.0}, {0.0, -1.0, 0.0}}}) {
+      const glm::dvec3 position = scale * place;
       std::vector<glm::vec4> inputs;
       for (std::size_t i = 0; i < kDraws; ++i) {
         inputs.emplace_back(position, 0.0);
