@@ -81,7 +81,8 @@ class Builder {
   explicit Builder(const std::vector<LocalLamp>& lamps) : lamps_(lamps), order_(lamps.size()) {
     std::iota(order_.begin(), order_.end(), 0u);
     result_.lights.resize(lamps.size());
-    split(order_, 0);
+    result_.texels.resize(hierarchyTexels(lamps.size()));
+    if (lamps.size() > 1) split(order_, 0);
     for (std::size_t leaf = 0; leaf < lamps.size(); ++leaf) {
       const LocalLamp& lamp = lamps[order_[leaf]];
       result_.lights[leaf] = lamp.light;
@@ -104,7 +105,6 @@ class Builder {
   /// Writes the pair of the two halves of `part`, and all pairs below it.
   void split(Lamps part, int depth) {
     const std::uint32_t pair = result_.pairs++;
-    result_.texels.resize(result_.firstPair() + 4 * static_cast<std::size_t>(result_.pairs));
     const std::size_t first = halve(part, depth);
     const Lamps halves[2] = {part.first(first), part.subspan(first)};
     const auto split = static_cast<std::uint32_t>(&halves[1].front() - order_.data());
@@ -183,7 +183,7 @@ class Builder {
 }  // namespace
 
 LightHierarchy lightHierarchy(const std::vector<LocalLamp>& lamps) {
-  CHECK(lamps.size() >= 2 && lamps.size() <= 1u << 29, "{} lamps", lamps.size());
+  CHECK(!lamps.empty() && lamps.size() <= 1u << 29, "{} lamps", lamps.size());
   return Builder(lamps).take();
 }
 

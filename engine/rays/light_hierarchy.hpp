@@ -41,7 +41,10 @@ struct LightHierarchy {
   std::size_t firstPair() const { return (lights.size() + 1) / 2; }  ///< its texel
 };
 
-/// At least two lamps, at most 2^29.
+/// Of a hierarchy of so many lamps.
+constexpr std::size_t hierarchyTexels(std::size_t lamps) { return (lamps + 1) / 2 + 4 * (lamps - 1); }
+
+/// At least one lamp, at most 2^29. One has no pair.
 LightHierarchy lightHierarchy(const std::vector<LocalLamp>& lamps);
 
 }  // namespace lucerna

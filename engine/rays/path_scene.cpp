@@ -77,13 +77,16 @@ void PathScene::update(const Scene& scene, std::span<const std::size_t> meshes) 
     uploadTriangles(scene);
     return;
   }
+  const auto wordOf = [](const std::vector<std::uint32_t>& words, std::uint32_t t) {
+    return words.empty() ? 0u : words[t];
+  };
   std::vector<std::uint32_t> changed;
   std::vector<bool> isOther(scene.meshes.size(), false);
   for (const std::size_t m : meshes) isOther[m] = true;
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
     const Mesh& mesh = scene.meshes[m];
     for (std::uint32_t t = mesh.firstIndex / 3; t < (mesh.firstIndex + mesh.indexCount) / 3; ++t) {
-      if (!isOther[m] && (before.empty() || before[t] == lampWords_[t])) continue;
+      if (!isOther[m] && wordOf(before, t) == wordOf(lampWords_, t)) continue;
       writeTriangle(scene, t, static_cast<std::uint32_t>(mesh.material));
       changed.push_back(t);
     }
@@ -137,7 +140,12 @@ void PathScene::uploadLights(const Scene& scene) {
     sunApart_ = table.sunApart;
     lampWords_.clear();
     for (const float density : table.pickDensity) lampWords_.push_back(std::bit_cast<std::uint32_t>(density));
-    if (settings_.fewestOfHierarchy > 0 && table.lamps.size() >= settings_.fewestOfHierarchy) uploadHierarchy(table);
+    // Programs are compiled for one or the other, also where lamps of a scene that moves go out.
+    if (!hasHierarchy_)
+      hasHierarchy_ =
+          settings_.fewestOfHierarchy > 0 && table.lamps.size() >= settings_.fewestOfHierarchy &&
+          hierarchyTexels(table.lamps.size()) <= static_cast<std::size_t>(capabilities_->maxTextureBufferSize);
+    if (*hasHierarchy_) uploadHierarchy(table);
     lightCount_ = table.lights.size();
     if (lightCount_ > 0) lights_ = storageOf("path lights", table.lights, *capabilities_);
     constants_.environmentPick = static_cast<float>(table.environmentPick);
@@ -147,12 +155,12 @@ void PathScene::uploadLights(const Scene& scene) {
 }
 
 void PathScene::uploadHierarchy(const LightTable& table) {
+  constants_.lampPick = static_cast<float>(table.lampPick);
+  if (table.lamps.empty()) return;  // all have gone out; none is drawn
   const LightHierarchy hierarchy = lightHierarchy(table.lamps);
-  if (hierarchy.texels.size() > static_cast<std::size_t>(capabilities_->maxTextureBufferSize)) return;
   const std::size_t bytes = hierarchy.texels.size() * sizeof(glm::uvec4);
   if (hierarchy_.bytes() == bytes) hierarchy_.upload(0, bytes, hierarchy.texels.data());
   else hierarchy_ = gl::BufferTexture("light hierarchy", gl::Format::rgba32ui, bytes, hierarchy.texels.data());
-  constants_.lampPick = static_cast<float>(table.lampPick);
   constants_.lampPairs = hierarchy.pairs;
   for (std::size_t leaf = 0; leaf < hierarchy.lights.size(); ++leaf) {
     const shared::PathLight& light = table.lights[hierarchy.lights[leaf]];

@@ -69,7 +69,7 @@ class PathScene {
   bool hasLights() const { return lightCount_ > 0; }
   std::size_t lightCount() const { return lightCount_; }  ///< entries of the table: each emissive triangle is one
   bool hasCoats() const { return hasCoats_; }
-  bool hasHierarchy() const { return hierarchy_.bytes() > 0; }
+  bool hasHierarchy() const { return hasHierarchy_.value_or(false); }
   const RayScene& rays() const { return rays_; }
   const glm::dvec3& origin() const { return rays_.origin(); }
   const Hash& hash() const { return hash_; }  ///< over everything that affects paths, as it was made
@@ -95,6 +95,7 @@ class PathScene {
   std::size_t lightCount_ = 0;
   bool sunApart_ = false;
   std::vector<std::uint32_t> lampWords_;  ///< of each triangle, or none: bits of pickDensity, or its leaf
+  std::optional<bool> hasHierarchy_;  ///< as it was made
   gl::BufferTexture hierarchy_;
   std::vector<std::uint32_t> triangleValues_;  ///< as uploaded; only kept where the scene moves
   shared::PathConstants constants_{};

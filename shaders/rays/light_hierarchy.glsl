@@ -45,7 +45,8 @@ int texelOfPair(uint pair) { return int((tracer.lampPairs + 2u) / 2u + 4u * pair
 
 // words: random.
 LightPick drawLamp(uvec4 words, vec3 position, vec3 normal) {
-  LightPick result = LightPick(0u, tracer.lampPick, 1.0);
+  LightPick result = LightPick(lampOfLeaf(0u).x, tracer.lampPick, 1.0);  // of a single lamp
+  if (tracer.lampPairs == 0u) return result;
   uint pair = 0u;
   for (int level = 0; level < kMostHierarchyDepth; ++level) {
     uint firstLink, secondLink;
@@ -71,6 +72,7 @@ LightPick drawLamp(uvec4 words, vec3 position, vec3 normal) {
 // The probability of a lamp, by the number of its leaf, without the receiver's normal.
 float lampProbability(uint leaf, vec3 position) {
   float result = tracer.lampPick;
+  if (tracer.lampPairs == 0u) return result;
   uint pair = 0u;
   for (int level = 0; level < kMostHierarchyDepth; ++level) {
     uint firstLink, secondLink;

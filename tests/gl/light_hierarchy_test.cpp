@@ -51,16 +51,16 @@ class LightHierarchyGl : public PathTest {
 
 TEST_F(LightHierarchyGl, DrawsFollowTheReference) {
   constexpr std::size_t kDraws = 32768;
-  for (const auto& [count, scale] : {std::pair(2u, 1.0), {3u, 1.0}, {50u, 1e-6}, {50u, 1e6}, {400u, 1.0}}) {
+  for (const auto& [count, scale] : {std::pair(1u, 1.0), {2u, 1.0}, {3u, 1.0}, {50u, 1e-6}, {50u, 1e6}, {400u, 1.0}}) {
     std::vector<LocalLamp> lamps = mixedLamps(count);
     for (LocalLamp& lamp : lamps) lamp.min *= scale, lamp.max *= scale;
     const LightHierarchy hierarchy = lightHierarchy(lamps);
     std::map<std::uint32_t, std::size_t> leafOf;
     for (std::size_t leaf = 0; leaf < count; ++leaf) leafOf[hierarchy.lights[leaf]] = leaf;
     for (const auto& [place, normal] : {std::pair(glm::dvec3(3.0, 0.0, 4.0), glm::dvec3(0.0, 1.0, 0.0)),
-                                           {{9.0, 1.5, 9.0}, {0.6, 0.0, -0.8}},
-                                           {{9.0, 1.5, 9.0}, {0.0, 0.0, 0.0}},
-                                           {{-50.0, 30.0, 0.0}, {0.0, -1.0, 0.0}}}) {
+                                        {{9.0, 1.5, 9.0}, {0.6, 0.0, -0.8}},
+                                        {{9.0, 1.5, 9.0}, {0.0, 0.0, 0.0}},
+                                        {{-50.0, 30.0, 0.0}, {0.0, -1.0, 0.0}}}) {
       const glm::dvec3 position = scale * place;
       std::vector<glm::vec4> inputs;
       for (std::size_t i = 0; i < kDraws; ++i) {
@@ -201,6 +201,28 @@ TEST_F(LightHierarchyGl, WhatASceneDoesNotNeedIsNotThere) {
   PathTracer::Settings published = sized(8);
   published.deviations.linearSeeds = true;
   EXPECT_FALSE(tracer(builder.scene(), camera, published, 1).scene().hasHierarchy());
+}
+
+// Programs stay as they were compiled when lamps go out and come back.
+TEST_F(LightHierarchyGl, LampsOfASceneThatMovesGoOut) {
+  Scene scene = ofAllKinds(true, false, 2);
+  PathScene::Settings settings;
+  settings.rays.moves = true;
+  PathScene traced(scene, analyse(scene), context().capabilities(), settings);
+  shared::PathConstants constants{};
+  for (const unsigned lit : {8u, 1u, 0u, 8u}) {
+    for (std::size_t i = 0; i < 2; ++i) {
+      scene.materials.back().emission = glm::vec3(lit == 8u ? 1.0f : 0.0f);
+      scene.spots[i].intensity = glm::vec3(lit == 8u ? 1.0f : 0.0f);
+      scene.points[i].intensity = glm::vec3(i < lit ? 1.0f : 0.0f);
+    }
+    traced.update(scene, {});
+    traced.fill(constants);
+    EXPECT_TRUE(traced.hasHierarchy());
+    EXPECT_EQ(traced.lightCount(), lit + 1);  // and the sun
+    EXPECT_EQ(constants.lampPick > 0.0f, lit > 0u);
+    EXPECT_TRUE(lit == 0u || constants.lampPairs == lit - 1) << lit;
+  }
 }
 
 // Points are sampled along flights, triangles and spots from collisions.

@@ -96,8 +96,8 @@ int depthOf(const LightHierarchy& hierarchy) { return depthBelow(hierarchy, 0); 
 
 std::vector<double> probabilities(const LightHierarchy& hierarchy, const glm::dvec3& position,
                                   const glm::dvec3& normal) {
-  std::vector<double> result(hierarchy.lights.size());
-  descend(hierarchy, 0, position, normal, 1.0, result);
+  std::vector<double> result(hierarchy.lights.size(), 1.0);
+  if (result.size() > 1) descend(hierarchy, 0, position, normal, 1.0, result);
   return result;
 }
 
