@@ -172,16 +172,6 @@ Finding judgeTime(const ErrorRow& a, const ErrorRow& b, const char* key, const T
   return finding;
 }
 
-nlohmann::ordered_json readReport(const std::string& path) {
-  namespace fs = std::filesystem;
-  const fs::path file = fs::is_directory(path) ? fs::path(path) / "error.json" : fs::path(path);
-  nlohmann::ordered_json report = nlohmann::ordered_json::parse(readFileText(file), nullptr, false);
-  if (report.is_discarded() || !report.is_object() || !report.contains("rows") || !report.at("rows").is_array() ||
-      !report.contains("bench"))
-    throwBadInput("{}: no report of lucerna bench error (its JSON, or the folder that holds error.json)", path);
-  return report;
-}
-
 std::map<std::string, ErrorRow> byLabel(const nlohmann::ordered_json& report, std::vector<std::string>& order) {
   std::map<std::string, ErrorRow> rows;
   for (const ErrorRow& row : report.at("rows")) {
@@ -211,7 +201,7 @@ int runDiff(const DiffOptions& options) {
   if (!(options.significance > 0.0 && options.significance < 1.0))
     throwBadInput("--significance {}: expected a number between 0 and 1", options.significance);
   // Match rows by their labels: in both reports, or in only one.
-  const nlohmann::ordered_json reportA = readReport(options.a), reportB = readReport(options.b);
+  const nlohmann::ordered_json reportA = readErrorReport(options.a), reportB = readErrorReport(options.b);
   if (reportA.at("bench") != reportB.at("bench"))
     throwBadInput("{} is of '{}', {} of '{}': only reports of one scene, view and size are compared", options.a,
                   reportA.at("bench").get<std::string>(), options.b, reportB.at("bench").get<std::string>());

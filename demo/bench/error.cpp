@@ -148,6 +148,7 @@ void ErrorBenchOptions::declare(Command app) {
       .range(2, 1 << 30);
   app.addOption("--frames", frames, "minimum number of pictures per point").showDefault().range(1, 10000);
   app.addOption("--out", out, "folder for the report; an interrupted bench continues where it was");
+  app.addOption("--before", before, "a report of an earlier program (its JSON or folder), drawn beside this one");
 }
 
 ErrorBenchPlan::ErrorBenchPlan(const Scene& original, const ErrorBenchOptions& options)
@@ -229,6 +230,11 @@ std::unique_ptr<ErrorBenchResult> runErrorBench(const gl::Context& context, gl::
   if (part && !isPart) copyUnits(*part->folder(), folder);
 
   auto result = std::make_unique<ErrorBenchResult>();
+  if (!options.before.empty()) {
+    result->report.before = readErrorReport(options.before);
+    if (const auto bench = result->report.before.at("bench"); bench != plan.title)
+      throwBadInput("--before {}: is of {}; this is {}", options.before, bench.get<std::string>(), plan.title);
+  }
   auto references = obtainReferences(plan.references(context, programs, options, folder / "references"));
   if (!references) return result;
   result->references = std::move(*references);

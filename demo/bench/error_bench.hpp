@@ -11,7 +11,7 @@ namespace lucerna::demo::bench {
 Scene withoutHighlights(Scene scene);
 
 struct ErrorBenchOptions {
-  std::string scene, camera, size = "160x90", out, references;
+  std::string scene, camera, size = "160x90", out, references, before;
   std::vector<std::string> techniques;  ///< sweeps; empty: all, or none if there are points
   std::vector<std::string> points;  ///< pictures besides, as parseSweepPoint() takes them
   double time = 0.0;  ///< at which the scene is posed, seconds

@@ -1,6 +1,7 @@
 #include "bench/error_report.hpp"
 
 #include "base/error.hpp"
+#include "base/files.hpp"
 #include "base/image.hpp"
 #include "base/log.hpp"
 #include "shared/figure.hpp"
@@ -139,6 +140,32 @@ std::string textOf(const HtmlPage::Table& table) {
   std::string result = line(table.columns, false);
   for (std::size_t r = 0; r < table.rows.size(); ++r) result += line(table.rows[r], table.marked[r]);
   return result;
+}
+
+std::vector<ErrorRow> rowsBefore(const ErrorReport& report) {
+  return report.before.is_null() ? std::vector<ErrorRow>{} : report.before.at("rows").get<std::vector<ErrorRow>>();
+}
+
+constexpr const char* kBeforeNote =
+    "Dotted curves are of the earlier program. Time to equal error, over before: the ratio of ms times the square of "
+    "the relative L2, as independent samples would need it; without rows at the noise of either reference.";
+
+/// Rows of both programs by their settings.
+HtmlPage::Table beforeTable(const ErrorReport& report) {
+  HtmlPage::Table table{
+      {"technique and settings", "ms, before", "now", "rel. L2, before", "now", "to equal error"}, {}, {}};
+  const std::vector<ErrorRow> before = rowsBefore(report);
+  for (const ErrorRow& row : report.rows) {
+    const auto old = std::find_if(before.begin(), before.end(),
+                                  [&](const ErrorRow& r) { return text(r, "label") == text(row, "label"); });
+    if (old == before.end() || flag(row, "at_noise") || flag(*old, "at_noise")) continue;
+    const double error = number(row, "l2") / number(*old, "l2"),
+                 ratio = number(row, "ms") / number(*old, "ms") * error * error;
+    table.rows.push_back({text(row, "label"), fixed(number(*old, "ms"), 2), fixed(number(row, "ms"), 2),
+                          errorText(*old, "l2"), errorText(row, "l2"), fixed(ratio, 2)});
+    table.marked.push_back(ratio < 1.0);
+  }
+  return table;
 }
 
 HtmlPage::Table allLightTable(const ErrorReport& report) {
@@ -469,17 +496,24 @@ bool plotAllLight(const fs::path& folder, const ErrorReport& report) {
   plot.title = report.title + ": all light";
   plot.xLabel = "time of a picture, ms";
   plot.yLabel = "relative L2 error against path tracing, % (black = 100 %)";
-  Series front{"Pareto front", {}, true, true, 0};
+  Series front{"Pareto front", {}, true, true, false, 0};
   const std::map<std::string, std::size_t> styles = stylesOf(report);
   std::map<std::string, std::size_t> index;
   for (const ErrorRow& row : report.rows) {
     const std::string name = text(row, "series");
     const auto [found, isNew] = index.try_emplace(name, plot.series.size());
-    if (isNew) plot.series.push_back({name, {}, true, false, styles.at(name)});
+    if (isNew) plot.series.push_back({name, {}, true, false, false, styles.at(name)});
     if (!flag(row, "at_noise"))
       plot.series[found->second].points.push_back({number(row, "ms"), 100.0 * number(row, "l2"), ""});
     if (flag(row, "pareto") && !flag(row, "at_noise"))
       front.points.push_back({number(row, "ms"), 100.0 * number(row, "l2"), fmt::format("{:g}", number(row, "front"))});
+  }
+  for (const auto& [name, style] : styles) {
+    Series before{name + ", before", {}, true, false, true, style};
+    for (const ErrorRow& row : rowsBefore(report))
+      if (text(row, "series") == name && !flag(row, "at_noise"))
+        before.points.push_back({number(row, "ms"), 100.0 * number(row, "l2"), ""});
+    if (!before.points.empty()) plot.series.push_back(before);
   }
   plot.series.insert(plot.series.begin(), front);
   sortByTime(plot);
@@ -506,7 +540,7 @@ bool plotInside(const fs::path& folder, const ErrorReport& report) {
     if (inside.empty() || text(inside, "transport") == "direct" || text(inside, "transport") == "all") continue;
     models[text(inside, "model")];
     const auto [found, isNew] = index.try_emplace(text(row, "series"), plot.series.size());
-    if (isNew) plot.series.push_back({text(row, "series"), {}, true, false, styles.at(text(row, "series"))});
+    if (isNew) plot.series.push_back({text(row, "series"), {}, true, false, false, styles.at(text(row, "series"))});
     if (!flag(inside, "at_noise"))
       plot.series[found->second].points.push_back({number(row, "ms"), 100.0 * number(inside, "l2"), ""});
   }
@@ -520,6 +554,16 @@ bool plotInside(const fs::path& folder, const ErrorReport& report) {
 }
 
 }  // namespace
+
+nlohmann::ordered_json readErrorReport(const std::string& path) {
+  namespace fs = std::filesystem;
+  const fs::path file = fs::is_directory(path) ? fs::path(path) / "error.json" : fs::path(path);
+  nlohmann::ordered_json report = nlohmann::ordered_json::parse(readFileText(file), nullptr, false);
+  if (report.is_discarded() || !report.is_object() || !report.contains("rows") || !report.at("rows").is_array() ||
+      !report.contains("bench"))
+    throwBadInput("{}: no report of lucerna bench error (its JSON, or the folder that holds error.json)", path);
+  return report;
+}
 
 bool plotRows(const fs::path& folder, const ErrorReport& report) {
   const bool all = plotAllLight(folder, report), inside = plotInside(folder, report);
@@ -591,6 +635,12 @@ void addToPage(HtmlPage& page, const fs::path& folder, const ErrorReport& report
       "reference's mean, for comparison with others' figures. bias: signed, of the mean, with its standard error; (0): "
       "within 3 of it. Relative MSE: epsilon 0.01 mean^2.");
   if (const std::string slope = slopeText(report.rows); !slope.empty()) page.paragraph(slope);
+  if (!report.before.is_null()) {
+    page.heading(fmt::format("Beside an earlier program: {}, {}", report.before.value("program", "of no known version"),
+                             report.before.value("renderer", "of no known renderer")));
+    page.paragraph(kBeforeNote);
+    page.table(beforeTable(report));
+  }
   if (!report.inside.empty()) {
     page.heading(kInsideHeading);
     page.paragraph(kInsideNote);

@@ -19,8 +19,11 @@ struct ErrorReport {
   const References* references = nullptr;
   bool isDeviationStudy = false;
   std::vector<std::string> leftOut;  ///< what was not measured, or only of a coarser scene, with reasons
+  nlohmann::ordered_json before;  ///< the report of an earlier program, drawn beside this one; null: none
 };
 
+/// The JSON of a report, or of the folder that holds it. Throws Error(badInput) if it is none.
+nlohmann::ordered_json readErrorReport(const std::string& path);
 std::string terminalTable(const ErrorReport& report);
 /// A sentence: which technique to use for which time of a picture, from the front. Empty without rows.
 std::string choiceText(const std::vector<ErrorRow>& rows);

@@ -86,10 +86,10 @@ std::string script(const std::string& stem, const LogLogPlot& plot, int& leftOut
       continue;
     }
     const std::size_t round = series.style / kRound;
-    line(fmt::format("{} using 1:2 with {} lw 1.5 dt {} pt {} ps 0.9 lc rgb '{}' title {}", name,
-                     series.joined ? "linespoints" : "points", 1 + round % kDashes,
-                     kMarks[(series.style + 3 * round) % kRound], kColours[series.style % kRound],
-                     quoted(series.name)));
+    line(fmt::format("{} using 1:2 with {} lw 1.5 dt {} pt {} ps {} lc rgb '{}' title {}", name,
+                     series.joined ? "linespoints" : "points", series.isBefore ? 3 : 1 + round % kDashes,
+                     kMarks[(series.style + 3 * round) % kRound], series.isBefore ? 0.5 : 0.9,
+                     kColours[series.style % kRound], quoted(series.name)));
   }
   if (block == 0) return "";
   constexpr const char* kGreys[] = {"#000000", "#777777", "#aaaaaa"};

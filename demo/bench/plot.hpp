@@ -17,6 +17,7 @@ struct Series {
   std::vector<Point> points;
   bool joined = true;
   bool isFront = false;  ///< drawn thick, behind the others
+  bool isBefore = false;  ///< of an earlier program: dotted, with small marks
   std::size_t style = 0;  ///< index of its colour, mark and dashes
 };
 

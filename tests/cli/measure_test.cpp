@@ -255,6 +255,21 @@ TEST_F(Measure, BenchErrorReportsAndGoesOnWhereItWas) {
     EXPECT_EQ(sweep.at("rises").size(), rises) << sweep;
   }
 
+  // An earlier report beside it: with half of its times and errors, this one takes eight times as long to its error.
+  nlohmann::json earlier = json("error.json");
+  for (auto& row : earlier.at("rows"))
+    for (const char* key : {"ms", "l2"}) row.at(key) = 0.5 * row.at(key).get<double>();
+  std::ofstream(path("earlier.json")) << earlier;
+  const std::string beside = benchError("--techniques direct,rsm,path --before '" + path("earlier.json") + "'");
+  ASSERT_EQ(RUN_LUCERNA(beside).exitCode, 0);
+  const std::string both = readFileText(path("out") + "/report.html");
+  EXPECT_NE(both.find("Beside an earlier program"), std::string::npos);
+  EXPECT_NE(both.find(">8.00<"), std::string::npos);
+  EXPECT_NE(both.find("rsm, before"), std::string::npos);
+  earlier.at("bench") = "another, camera default, 32x18";
+  std::ofstream(path("earlier.json")) << earlier;
+  expectOneLine(RUN_LUCERNA(beside), 2, {"--before", "another, camera default"});
+
   // Another scene or size is another bench.
   expectOneLine(RUN_LUCERNA("bench error '" + path("scene.obj") + "' --size 32x18 --reference-spp 16 --out '" +
                             path("out") + "'"),
