@@ -171,6 +171,10 @@ void orderByNesting(std::vector<Shell>& shells, const std::string& scene) {
   shells = std::move(ordered);
 }
 
+/// The albedo below which a channel's collisions are drawn at the rate of its scattering alone, and absorption is a
+/// weight: otherwise chance would decide whether light gets through, and most paths would end.
+constexpr float kAbsorbing = 0.25f;
+
 }  // namespace
 
 PackedMedia packMedia(const std::vector<Medium>& media, const glm::dvec3& origin) {
@@ -188,6 +192,7 @@ PackedMedia packMedia(const std::vector<Medium>& media, const glm::dvec3& origin
       // A channel that does not scatter has no g: it copies the others, so that all can be equal.
       record.albedo[c] =
           extinction[c] > 0.0 ? static_cast<float>(static_cast<double>(medium.scattering[c]) / extinction[c]) : 0.0f;
+      record.rate[c] = record.albedo[c] < kAbsorbing ? medium.scattering[c] : static_cast<float>(extinction[c]);
       record.oneMinusG[c] = static_cast<float>(1.0 - g);
       record.onePlusG[c] = static_cast<float>(1.0 + g);
     }
@@ -200,7 +205,7 @@ PackedMedia packMedia(const std::vector<Medium>& media, const glm::dvec3& origin
     record.extinction = glm::vec3(extinction);
     record.emission = medium.emission;
     record.phase = medium.phase == PhaseFunction::rayleigh ? 1 : 0;
-    record.greyExtinction = equalChannels(record.extinction);
+    record.greyExtinction = equalChannels(record.extinction) && record.rate == record.extinction;
     record.greyPhase = equalChannels(record.oneMinusG) && equalChannels(record.onePlusG);
     record.grid = -1;
     record.majorant = static_cast<float>(largest(extinction));

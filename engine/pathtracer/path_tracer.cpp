@@ -189,11 +189,11 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
     lightVisibility_.emplace(programs, scene, *scene_, constantsBuffer_);
   }
   if (features_.denseMedia) addClearances(scene);
-  if (!settings.deviations.rouletteWithoutDivision) markDarkBodies(scene);
   if (features_.dielectrics || features_.nullBoundaries)
     interiors_ = storageOf("path interiors", boundaries_.interiors, capabilities);
   if (features_.media) {
-    const PackedMedia packed = packMedia(scene.media, scene_->origin());
+    PackedMedia packed = packMedia(scene.media, scene_->origin());
+    markSplitMedia(scene, packed);
     media_ = storageOf("path media", packed.media, capabilities);
     interiors_ = storageOf("path interiors", boundaries_.interiors, capabilities);
     outerMedium_ = scene.cameraMedium;
@@ -274,7 +274,8 @@ gl::ShaderFlags PathTracer::flags() const {
                          {"CANDIDATES", lightCandidates()},
                          {"LIGHT_VISIBILITY", lightVisibility_.has_value()},
                          {"WALKS", features_.denseMedia},
-                         {"DARK_BODIES", darkBodies_},
+                         {"SPLITS_BOUNDARIES", features_.dielectrics && !settings_.deviations.rouletteWithoutDivision},
+                         {"SPLITS_FLIGHTS", splitsFlights_},
                          {"HETEROGENEOUS", features_.heterogeneousMedia},
                          {"VOLUME_EMISSION", features_.volumeEmission},
                          {"GLOSSY", features_.conductors || features_.roughDielectrics || scene_->hasCoats()},
@@ -320,14 +321,18 @@ gl::ShaderFlags PathTracer::kernelFlags() const {
   return all;
 }
 
-void PathTracer::markDarkBodies(const Scene& scene) {
-  const std::vector<Bounds> bounds = boundsOfRanks(boundaries_);
-  for (std::size_t rank = 0; rank < boundaries_.interiors.size(); ++rank) {
-    shared::InteriorRecord& interior = boundaries_.interiors[rank];
-    const bool isDielectric = (boundaries_.dielectricRanks[static_cast<int>(rank / 8)] >> (4 * (rank % 8)) & 15u) != 0;
-    if (!isDielectric || interior.medium < 0) continue;
-    interior.dark = isDark(scene.media[static_cast<std::size_t>(interior.medium)], glm::length(bounds[rank].extent()));
-    darkBodies_ = darkBodies_ || interior.dark != 0;
+void PathTracer::markSplitMedia(const Scene& scene, PackedMedia& packed) {
+  const PathDeviations& deviations = settings_.deviations;
+  if (features_.volumeEmission || deviations.rouletteWithoutDivision || deviations.distanceWithoutPdf ||
+      deviations.boostedInteraction)
+    return;
+  for (std::size_t m = 0; m < packed.media.size(); ++m) {
+    const bool isWalked = std::any_of(boundaries_.interiors.begin(), boundaries_.interiors.end(), [&](const auto& i) {
+      return i.medium == static_cast<int>(m) && i.clearance >= 0;
+    });
+    if (isWalked || scene.media[m].scattering == glm::vec3(0.0f)) continue;
+    packed.media[m].splits = 1;
+    splitsFlights_ = true;
   }
 }
 

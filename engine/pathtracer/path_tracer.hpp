@@ -167,7 +167,7 @@ class PathTracer {
   std::size_t queueLength() const;
   /// Grids of distances to the nearest triangle for the boundaries of dense media.
   void addClearances(const Scene& scene);
-  void markDarkBodies(const Scene& scene);
+  void markSplitMedia(const Scene& scene, PackedMedia& packed);
   enum class Passes { doubling, whole };
   bool submit(std::uint32_t samples, Passes passes);
   void dispatch(glm::ivec2 corner, glm::ivec2 size, std::uint32_t target);
@@ -207,7 +207,7 @@ class PathTracer {
   InsideCounts cameraInside_{0u};
   float cameraIor_ = 1.0f;
   std::string cameraWarning_;  ///< to be reported before the first path
-  bool darkBodies_ = false;  ///< some are marked
+  bool splitsFlights_ = false;  ///< some media are marked to be split
   bool lampsOutside_ = false;  ///< none lies within a dielectric
   gl::Buffer media_, interiors_, grids_, densities_;
   gl::BufferTexture clearances_, casterTriangles_;

@@ -57,15 +57,6 @@ bool isDense(const Medium& medium, double extent) {
   return false;
 }
 
-bool isDark(const Medium& medium, double extent) {
-  if (medium.grid) return false;
-  for (int c = 0; c < 3; ++c) {
-    const double absorption = medium.absorption[c];
-    if (absorption * extent < 4.0 || absorption < medium.scattering[c] * (1.0 - anisotropy(medium, c))) return false;
-  }
-  return true;
-}
-
 std::vector<std::pair<std::string, bool>> SceneFeatures::named() const {
   return {
       {"diffuseTextures", diffuseTextures},

@@ -54,8 +54,4 @@ SceneFeatures analyse(const Scene& scene);
 /// possible.
 bool isDense(const Medium& medium, double extent);
 
-/// Whether hardly any light that enters a body of that extent comes back: every channel is absorbed within it, and
-/// before scattering has turned it round. The path tracer then follows what its surface reflects in every sample.
-bool isDark(const Medium& medium, double extent);
-
 }  // namespace lucerna

@@ -44,8 +44,88 @@ void addPointLight(inout Path path, MediumRecord medium, vec3 q, float s, PathNu
 }
 #endif
 
+#if SPLITS_FLIGHTS
+const float kRarelyBelow = 0.125;  // a part with a smaller share of the light is followed now and then
+
+float sumOf(vec3 v) { return v.x + v.y + v.z; }
+
+// Whether both outcomes of a flight are followed, one after the other: forced collisions [SpanierGelbard1969], for
+// camera rays alone. Nothing may have been added by then, since the path's way up to here is traced twice.
+bool splitsFlight(Path path, MediumRecord medium) {
+  bool isFirst = (path.part == kWhole && all(equal(radianceOf(path), vec3(0.0)))) || path.part == kSecond;
+#if NEXT_EVENT && (POINTS || SPOTS)
+  if (medium.grid < 0 && lampsReach(path)) return false;  // they are sampled along the flight
+#endif
+  return medium.splits != 0 && isFirst && path.scatterings == 0u;
+}
+
+// The part of its sample that a path follows, of light that passes or scatters, by the sums of their throughputs: true
+// if that is what scatters. probability: of being followed, by which the part's throughput is divided.
+bool followsScattered(inout Path path, float passing, float scattered, float u, out float probability) {
+  probability = 1.0;
+  if (!(scattered > 0.0)) return false;
+  float unit = kRarelyBelow * (passing + scattered);
+  float passes = min(passing / unit, 1.0), scatters = min(scattered / unit, 1.0);
+  bool isSecond = path.part == kSecond ? u >= 1.0 - scatters : u >= passes;
+  if (u < passes && u >= 1.0 - scatters) path.part = path.part == kSecond ? kLast : kFirst;
+  probability = isSecond ? scatters : passes;
+  return isSecond;
+}
+
+// Both outcomes of a flight in a homogeneous medium, up to a distance. True: it arrives; else the length of the flight.
+bool splitFlight(inout Path path, MediumRecord medium, float distance, PathNumbers numbers, out float flown) {
+  vec3 reach = vec3(oneMinusExp(medium.extinction.r * distance), oneMinusExp(medium.extinction.g * distance),
+                    oneMinusExp(medium.extinction.b * distance));
+  vec3 scattered = path.throughput * medium.albedo * reach, passing = path.throughput * (1.0 - reach);
+  float probability, sum = sumOf(scattered);
+  flown = distance;
+  if (!followsScattered(path, sumOf(passing), sum, unitFloat(randomWords(numbers, path.event, kPurposeFlight).w),
+                        probability)) {
+    path.throughput = passing / probability;
+    return true;
+  }
+  uvec2 words = randomWordPair(numbers, path.event, kPurposeFlight);
+  vec3 q = scattered / sum;
+  int channel = pickChannel(q, unitFloat(words.y));
+  flown = negativeLog1m(unitFloat(words.x) * reach[channel]) / medium.extinction[channel];
+  vec3 density = medium.extinction * exp(-medium.extinction * flown);
+  vec3 given = mix(vec3(0.0), density / reach, greaterThan(q, vec3(0.0)));
+  path.throughput *= medium.albedo * density / (dot(q, given) * probability);
+  return false;
+}
+#endif
+
 #if HETEROGENEOUS
 const uint kMostTracked = 64u;  // tentative collisions of a flight before it is interrupted
+
+#if SPLITS_FLIGHTS
+// After so many tentative collisions, or once a tenth of the light is left, chance decides.
+const uint kMostSplit = 48u;
+const float kLeastSplit = 0.3;
+const float kSplitPlaces = 4.0;  // tentative collisions on a way through the whole grid, at least
+
+// Both outcomes of a flight in a grid: every tentative collision scatters its share of the light that still passes. One
+// of them is kept, in proportion to the light that it scatters, by a random number that each choice uses up in part.
+struct Split {
+  vec3 scattered;  // throughput of what is scattered, for a sum of 1
+  float sum;       // of that throughput
+  float place;     // where, along the ray
+  float random;
+};
+
+void considerCollision(inout Split split, vec3 scattered, float t) {
+  float sum = sumOf(scattered);
+  if (!(sum > 0.0)) return;
+  split.sum += sum;
+  float share = sum / split.sum;
+  bool isKept = split.random < share;
+  split.random = isKept ? split.random / share : (split.random - share) / (1.0 - share);
+  if (isKept) {
+    split.scattered = scattered / sum;
+    split.place = t;
+  }
+}
+#endif
 
 // Delta tracking over the free part of the ray. After a number of tentative collisions the flight is interrupted and
 // continues with the next ray: exponential flights have no memory, and no submission is held up.
@@ -59,11 +139,19 @@ int trackDensity(inout Path path, MediumRecord medium, float distance, PathNumbe
   float head = path.head;
   bool goesOn = densityMarchStart(gridOf(medium), path.origin - head * path.direction, path.direction,
                                   distance + head, march);
+#if SPLITS_FLIGHTS
+  bool splits = splitsFlight(path, medium);
+  Split split = Split(vec3(0.0), 0.0, 0.0, unitFloat(words.z));
+  float leastRate = splits ? kSplitPlaces / max(march.last - march.near, 1e-30) : 0.0;
+#endif
   int left = densityMostBlocks(gridOf(medium));
   for (; left > 0 && goesOn && densityMarchNext(gridOf(medium), march, bound); --left) {  // ends: as many as blocks
     ++loopIterations;
     float rate = medium.majorant * bound;
     if (!(rate > 0.0)) continue;
+#if SPLITS_FLIGHTS
+    rate = max(rate, leastRate);
+#endif
     t = march.near;
     for (uint step = 0u; step < kMostTracked; ++step) {
       ++loopIterations;
@@ -73,7 +161,7 @@ int trackDensity(inout Path path, MediumRecord medium, float distance, PathNumbe
       float density = densityAt(gridOf(medium), march.origin + t * march.direction);
       vec3 share = min(medium.extinction * (density / rate), vec3(1.0));
       vec3 q = channelProbabilities(path.throughput);
-      float real = dot(q, share);
+      float real = dot(q, min(medium.rate * (density / rate), vec3(1.0)));
 #if VOLUME_EMISSION
       if (counts(path.scatterings)) {
         vec3 emitted = medium.emission * (density / rate);
@@ -82,6 +170,14 @@ int trackDensity(inout Path path, MediumRecord medium, float distance, PathNumbe
         noteLight(path, numbers, lightOf(path, emitted), PATH_INSPECTED_MEDIUM, 0u, path.origin,
                   path.origin + (t - head) * path.direction, false);
 #endif
+      }
+#endif
+#if SPLITS_FLIGHTS
+      if (splits && tries < kMostSplit && sumOf(path.throughput) > kLeastSplit) {
+        considerCollision(split, path.throughput * medium.albedo * share, t);
+        path.throughput *= 1.0 - share;
+        ++tries;
+        continue;
       }
 #endif
       collided = unitFloat(words.y) < real;
@@ -93,10 +189,26 @@ int trackDensity(inout Path path, MediumRecord medium, float distance, PathNumbe
       if (!goesOn) break;
     }
   }
+#if SPLITS_FLIGHTS
+  if (splits) {
+    if (collided) {
+      considerCollision(split, path.throughput, t);
+      path.throughput = vec3(0.0);
+    }
+    float probability;
+    collided = followsScattered(path, sumOf(path.throughput), split.sum, unitFloat(words.w), probability);
+    path.throughput = (collided ? split.sum * split.scattered : path.throughput) / probability;
+    if (collided) t = split.place;
+  }
+  uint part = path.part;
+#endif
   vec3 throughput = path.throughput;
   forgetAddresses();
   reload(path);
   path.throughput = throughput;
+#if SPLITS_FLIGHTS
+  path.part = part;
+#endif
   bool arrives = !collided && tries < kMostTracked;
   if (!arrives) path.origin += (t - head) * path.direction;
   if (!arrives && !collided) {
@@ -124,6 +236,9 @@ float interactionProbability(MediumRecord medium) {
 // distance is found once the ray's end is known.
 float beginFlight(Path path, MediumRecord medium, PathNumbers numbers) {
   if (medium.grid >= 0) return kFar;
+#if SPLITS_FLIGHTS
+  if (splitsFlight(path, medium)) return kFar;
+#endif
   uvec2 words = randomWordPair(numbers, path.event, kPurposeFlight);
 #if DISTANCE_WITHOUT_PDF
   // [VPT2024, algorithm 4]: with the smallest extinction, and only with the probability of an interaction.
@@ -253,8 +368,14 @@ int crossMedium(inout Path path, int index, float flight, Hit hit, PathNumbers n
 #endif
   {
     bool arrives = arrivesAt(hit, flight);
-    weighFlight(path, mediumAt(index), channelProbabilities(path.throughput), flownDistance(path, hit, flight), arrives,
-                numbers);
+    float flown = flownDistance(path, hit, flight);
+#if SPLITS_FLIGHTS
+    if (splitsFlight(path, mediumAt(index))) {
+      arrives = splitFlight(path, mediumAt(index), flown, numbers, flown);
+      flight = flown - path.head;
+    } else
+#endif
+      weighFlight(path, mediumAt(index), channelProbabilities(path.throughput), flown, arrives, numbers);
     if (arrives) return kFlightArrives;
     // Nearer to a face than a gap, the path continues from a gap beside it. The piece of flight along the face's normal
     // that is thereby skipped or repeated is made up for in the next flight, as if it had begun where it should have.

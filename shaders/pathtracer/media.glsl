@@ -1,11 +1,12 @@
 // Homogeneous participating media: free flights and scattering, unbiased for any ratio of the channels' coefficients.
 //
-// A channel j is chosen with probability q_j proportional to the path's throughput, a distance t drawn from its
-// exponential density, and all channels are weighted by the balance heuristic [Miller2019; Chiang2016]:
-//   collision at t:      throughput_c *= sigma_s,c T_c(t) / sum_j q_j sigma_t,j T_j(t)
-//   boundary at d <= t:  throughput_c *= T_c(d) / sum_j q_j T_j(d)
-// Without absorption both leave the sum of the channels as it is, so no weight exceeds their number. exp(-sigma_min t)
-// is taken out of numerators and denominators, which would underflow from an optical depth of 87 on.
+// A channel j is chosen with probability q_j proportional to the path's throughput, a distance t drawn from the
+// exponential density of a rate r_j, and all channels are weighted by the balance heuristic [Miller2019; Chiang2016]:
+//   collision at t:      throughput_c *= sigma_s,c T_c(t) / sum_j q_j r_j exp(-r_j t)
+//   boundary at d <= t:  throughput_c *= T_c(d) / sum_j q_j exp(-r_j d)
+// The rate is sigma_t or, where most is absorbed, sigma_s: light that passes is then weakened instead of lost by chance
+// [SpanierGelbard1969]. As sigma_s <= r <= sigma_t, no weight exceeds the number of channels. exp(-r_min t) is taken out
+// of numerators and denominators, which would underflow from an optical depth of 87 on.
 #include "shared/media.h"
 #include "pathtracer/numeric.glsl"
 #include "pathtracer/phase.glsl"
@@ -26,25 +27,30 @@ int pickChannel(vec3 q, float u) {
   return q.b > 0.0 ? 2 : (q.g > 0.0 ? 1 : 0);
 }
 
-// T_c(t) of the live channels, relative to the largest of them; 0 for dead channels.
-vec3 relativeTransmittance(vec3 extinction, bvec3 live, float t) {
-  vec3 bounded = mix(vec3(3e38), extinction, live);
-  float least = min(min(bounded.r, bounded.g), bounded.b);
-  return mix(vec3(0.0), exp(-(bounded - least) * t), live);
+// The smallest coefficient of the live channels.
+float leastOf(vec3 coefficients, bvec3 live) {
+  vec3 bounded = mix(vec3(3e38), coefficients, live);
+  return min(min(bounded.r, bounded.g), bounded.b);
+}
+
+// exp(-c t) of the live channels' coefficients c, over exp(-least t); 0 for dead channels.
+vec3 relativeTransmittance(vec3 coefficients, bvec3 live, float least, float t) {
+  return mix(vec3(0.0), exp(-(coefficients - least) * t), live);
 }
 
 // Distance to the next collision.
 float flightDistance(MediumRecord medium, int channel, uint k) {
-  float extinction = medium.extinction[channel];
-  return extinction > 0.0 ? min(exponentialSample(k) / extinction, kFar) : kFar;
+  float rate = medium.rate[channel];
+  return rate > 0.0 ? min(exponentialSample(k) / rate, kFar) : kFar;
 }
 
-// T_c / sum_j q_j sigma_t,j T_j: the weight of a quantity per unit length that is evaluated at a collision. 0 in
+// T_c / sum_j q_j r_j exp(-r_j t): the weight of a quantity per unit length that is evaluated at a collision. 0 in
 // channels without collisions.
 vec3 collisionWeight(MediumRecord medium, vec3 q, float t) {
-  bvec3 live = bvec3(vec3(greaterThan(q, vec3(0.0))) * vec3(greaterThan(medium.extinction, vec3(0.0))));
-  vec3 e = relativeTransmittance(medium.extinction, live, t);
-  return e / dot(q, medium.extinction * e);
+  bvec3 live = bvec3(vec3(greaterThan(q, vec3(0.0))) * vec3(greaterThan(medium.rate, vec3(0.0))));
+  float least = leastOf(medium.rate, live);
+  return relativeTransmittance(medium.extinction, live, least, t) /
+         dot(q, medium.rate * relativeTransmittance(medium.rate, live, least, t));
 }
 
 vec3 scatteringWeight(MediumRecord medium, vec3 q, float t) {
@@ -55,8 +61,10 @@ vec3 scatteringWeight(MediumRecord medium, vec3 q, float t) {
 // The weight for reaching the boundary at distance d.
 vec3 passageWeight(MediumRecord medium, vec3 q, float d) {
   if (medium.greyExtinction != 0) return vec3(1.0);
-  vec3 e = relativeTransmittance(medium.extinction, greaterThan(q, vec3(0.0)), d);
-  return e / dot(q, e);
+  bvec3 live = greaterThan(q, vec3(0.0));
+  float least = leastOf(medium.rate, live);
+  return relativeTransmittance(medium.extinction, live, least, d) /
+         dot(q, relativeTransmittance(medium.rate, live, least, d));
 }
 
 vec3 phaseValue(MediumRecord medium, vec3 w, vec3 to) {

@@ -109,12 +109,13 @@ bool survivesSurface(inout Path path, float random) {
 #endif
 }
 
-#if DARK_BODIES
-// Whether a path is at the first thing that its sample meets, and that is a dark body. Nothing has shone on its way
-// there, so the part that begins anew adds nothing twice.
-bool isAtDarkBody(Path path, Bsdf bsdf, PathMaterial material) {
+#if SPLITS_BOUNDARIES
+// Whether what refracts and what reflects are both followed: at the first thing that a sample meets, unless a dense
+// medium lies behind it, where nearly all of the time goes. Nothing has shone on the way there, so the part that begins
+// anew adds nothing twice.
+bool splitsBoundary(Path path, Bsdf bsdf, PathMaterial material) {
   return path.event == 1u && bsdf.kind == PATH_DIELECTRIC && isSmooth(bsdf) &&
-         interiors[int(material.boundary)].dark != 0 && topRank(path.inside) < 0 && outerMedium < 0 &&
+         interiors[int(material.boundary)].clearance < 0 && topRank(path.inside) < 0 && outerMedium < 0 &&
          all(equal(material.emission, vec3(0.0)));
 }
 #endif
@@ -204,12 +205,13 @@ bool handleHit(inout Path path, Hit hit, PathNumbers numbers) {
   uvec4 choice = randomWords(numbers, path.event, kPurposeChoice);  // for roulette only
 #endif
   float lobe = unitFloat(choice.x);
-#if DARK_BODIES
-  if (isAtDarkBody(path, bsdf, material)) {
+#if SPLITS_BOUNDARIES
+  if (splitsBoundary(path, bsdf, material)) {
     float cosI = clamp(-dot(bsdf.normal, path.direction), 0.0, 1.0), cosT;
     float reflectance = fresnelDielectric(cosI, bsdf.eta, cosT);
-    if (path.part == kWhole) path.part = kRefracted;
-    bool reflects = path.part == kReflected;
+    if (path.part == kWhole) path.part = kFirst;
+    bool reflects = path.part == kSecond;
+    if (reflects) path.part = kLast;
     path.throughput *= reflects ? reflectance : 1.0 - reflectance;
     lobe = reflects ? 0.0 : 1.0;  // certain
   }
@@ -531,11 +533,11 @@ void beginPath(out Path path, ivec2 pixel, PathNumbers numbers) {
 // kEnds: the sample is complete, and the next path starts. False: the pixel has all its samples.
 bool nextSample(inout Path path, inout Film film, uint where, inout PathNumbers numbers) {
   ivec2 pixel = pixelAt(where + hiddenZero());
-#if DARK_BODIES
-  if (path.part == kRefracted) {
+#if PARTS
+  if (path.part == kFirst) {
     vec3 radiance = radianceOf(path);
     beginPath(path, pixel, numbers);
-    path.part = kReflected;
+    path.part = kSecond;
     path.radiance = radiance;
     spill(path);
     startRadiance(path);

@@ -5,6 +5,7 @@
 // another stage, lies there instead of in registers. reload...() and spill...() do nothing otherwise.
 #define SPILLED (SHARED_STACK > 0)
 #define WALKING (WALKS && !INSPECTED)  // in walk.comp; an inspected pixel traces every flight
+#define PARTS (SPLITS_BOUNDARIES || SPLITS_FLIGHTS)
 #include "pathtracer/film_place.glsl"
 
 layout(std430, binding = 5) restrict buffer StateBlock {
@@ -35,8 +36,8 @@ struct Path {
   uint event;           // index in the sequence of random numbers: one per surface or medium event
   float ior;            // at the ray's origin
   uint chain;           // smooth scatterings in a row so far
-#if DARK_BODIES
-  uint part;            // of its sample: kWhole, kRefracted or kReflected
+#if PARTS
+  uint part;            // of its sample: kWhole, kFirst or kSecond
 #endif
 #if INTERIORS
   uvec4 inside;         // the closed boundaries that contain the path (boundary.glsl)
@@ -53,10 +54,11 @@ struct Path {
 const float kRouletteBelow = 0.25;
 
 const uint kMostChain = 63u;  // smooth scatterings that are counted
-#if DARK_BODIES
-// A sample that first meets a dark body has two parts, one after the other: what refracts there, and, from the camera
-// anew, what reflects. Drawing one of them would make nearly all of the noise, since little comes back from inside.
-const uint kWhole = 0u, kRefracted = 1u, kReflected = 2u;
+#if PARTS
+// A sample may have two parts, one after the other: at a smooth boundary what refracts there and, from the camera anew,
+// what reflects; in a thin medium what passes and what is scattered. Drawing one of them makes most of the noise where
+// one is rare and bright, as a wisp of smoke, or the other dark, as coffee. kSecond: up to where they part.
+const uint kWhole = 0u, kFirst = 1u, kSecond = 2u, kLast = 3u;
 #endif
 
 // In the saved event: a path is waiting to be continued; it has ended, and waits for manifold.comp, or in a walk; the
@@ -91,7 +93,7 @@ Path startPath(ivec2 pixel, PathNumbers numbers) {
   path.event = 0u;
   path.ior = 1.0;
   path.chain = 0u;
-#if DARK_BODIES
+#if PARTS
   path.part = kWhole;
 #endif
 #if INTERIORS
@@ -187,7 +189,7 @@ void restorePath(out Path path) {
   path = Path(uintBitsToFloat(w0.xyz), w0.w, uintBitsToFloat(w1.xyz), uintBitsToFloat(w1.w), uintBitsToFloat(w2.xyz),
               uintBitsToFloat(w2.w), uintBitsToFloat(w3.xyz), w3.w & 0xffffffu, w4.x & kEventBits,
               uintBitsToFloat(w4.y), w3.w >> 24u & kMostChain
-#if DARK_BODIES
+#if PARTS
               ,
               w3.w >> 30u
 #endif
@@ -203,7 +205,7 @@ void spillPath(Path path) {
   state[wordAt(0u)] = uvec4(floatBitsToUint(path.origin), path.skip);
   state[wordAt(1u)] = uvec4(floatBitsToUint(path.direction), floatBitsToUint(path.pdf));
   state[wordAt(2u)] = uvec4(floatBitsToUint(path.throughput), floatBitsToUint(path.travelled));
-#if DARK_BODIES
+#if PARTS
   uint part = path.part << 30u;
 #else
   const uint part = 0u;

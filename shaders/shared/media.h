@@ -16,9 +16,11 @@ struct MediumRecord {
   vec3 emission;     // radiance per unit
   int grid;          // index of its DensityRecord, -1: homogeneous
   vec3 oneMinusG;
-  int greyExtinction;  // the channels are equal: a free flight's weight is the albedo itself
+  int greyExtinction;  // equal channels, and the rate: a free flight's weight is the albedo itself
   vec3 onePlusG;
   int greyPhase;       // likewise: the direction's weight is 1
+  vec3 rate;         // 1/unit, at which collisions are drawn: the extinction, or what scatters where most is absorbed
+  int splits;        // 1: camera paths follow both what passes it and what scatters in it
 };
 
 // A density grid: cell centres in `densities` starting at firstDensity, x fastest; bounds of blocks of cells in
@@ -39,7 +41,7 @@ struct InteriorRecord {
   int clearance;    // index of its clearance grid's first cell; -1: none
   float cell;       // edge of that grid's cells
   vec3 min;         // corner of its first cell
-  int dark;         // 1: hardly any light that enters comes back (isDark)
+  int unused;
   ivec4 size;       // cells, x fastest; w unused
 };
 

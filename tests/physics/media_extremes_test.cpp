@@ -62,7 +62,7 @@ TEST_F(MediaExtremes, OpticalDepthOfAMillionth) {
 TEST_F(MediaExtremes, OpticalDepthOfAThousandth) {
   const PixelEstimate e = estimate(picture(slab(grey(1.0, 1e-3, 0.0), 1.0, 1.0), isLong() ? 131072 : 8192, found()));
   expectExact("R tau 1e-3, a 1", e.mean.x, e.error.x, 4.9975038e-4, isLong() ? 0.007 : 0.03);
-  EXPECT_NEAR(e.mean.x + e.mean.y, 1.0, 2e-6);
+  EXPECT_NEAR(e.mean.x + e.mean.y, 1.0, 3.5 * 3.0 * e.energyError);  // what scatters is followed now and then
 }
 
 TEST_F(MediaExtremes, OpticalDepthsOfAHundredAndAThousand) {

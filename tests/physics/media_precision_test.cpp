@@ -15,6 +15,7 @@
 
 #include <cmath>
 #include <ctime>
+#include <numbers>
 
 namespace lucerna {
 namespace {
@@ -87,9 +88,8 @@ TEST_F(MediaPrecision, SlabsReflectAndTransmitAsTabled) {
   std::printf("%.1f s of processor time\n", sum);
 }
 
-TEST_F(MediaPrecision, BothWaysFromADarkBodyAreInEverySample) {
+TEST_F(MediaPrecision, WhatRefractsAndWhatReflectsAreInEverySample) {
   // Nothing comes back from black glass, so a sample of it under a sky of 1 is Fresnel's reflectance, without noise.
-  // The slabs above that absorb half and more at a collision are dark bodies too: light gets through these.
   Scene scene;
   scene.media = {homogeneous(glm::dvec3(0.0), glm::dvec3(1000.0), 0.0)};
   addBox(scene, {-30.0, -1.0, -30.0}, {30.0, 0.0, 30.0}, addBoundary(scene, Bsdf::dielectric, 1.5, 0));
@@ -99,6 +99,45 @@ TEST_F(MediaPrecision, BothWaysFromADarkBodyAreInEverySample) {
     scene.cameras = {cameraAt(at + glm::dvec3(std::sqrt(1.0 - mu * mu), mu, 0.0), at)};
     const double exact = reference::fresnel(mu, 1.0 / 1.5);
     for (const glm::vec3& pixel : picture(scene, 1).pixels) EXPECT_NEAR(pixel.y, exact, 1e-3 * exact) << mu;
+  }
+}
+
+// A slab of thickness 1 before a sky of 1, seen head-on through faces that do not refract.
+Scene slabBeforeSky(const Medium& medium) {
+  Scene scene = slab(medium, 1.0, 1.0);
+  scene.environment = constantEnvironment(1.0);
+  return scene;
+}
+
+TEST_F(MediaPrecision, WhatOnlyAbsorbsHasNoNoise) {
+  // Beer and Lambert in every sample: absorption is a weight, not a chance.
+  Medium medium = homogeneous(glm::dvec3(0.0), {0.1, 1.0, 5.0}, 0.0);
+  for (const glm::vec3& pixel : picture(slabBeforeSky(medium), 1).pixels)
+    for (int c = 0; c < 3; ++c)
+      EXPECT_NEAR(pixel[c], std::exp(-medium.absorption[c]), 1e-5 * std::exp(-medium.absorption[c])) << c;
+}
+
+TEST_F(MediaPrecision, AWispIsInMostSamples) {
+  // What a thin medium scatters once, of a sun behind the camera, before black: sigma E / (4 pi) times the integral of
+  // exp(-2 sigma s). Drawn by chance, one sample in fifty would have it, and a sample's standard error were seven times
+  // the mean.
+  const double sigma = 0.02, exact = 0.5 * -std::expm1(-2.0 * sigma) / (4.0 * std::numbers::pi);
+  for (const bool isGrid : {false, true}) {
+    Medium medium = homogeneous(glm::dvec3(sigma), glm::dvec3(0.0), 0.0);
+    if (isGrid) {
+      medium.grid.emplace();
+      medium.grid->size = glm::ivec3(2);
+      medium.grid->min = {-40.0, -0.5, -40.0};
+      medium.grid->max = {40.0, 0.5, 40.0};
+      medium.grid->density.assign(8, 1.0f);
+    }
+    Scene scene = slab(medium, 1.0, 1.0);
+    scene.environment.reset();
+    scene.sun = DirectionalLight{{0.0, -1.0, 0.0}, glm::vec3(1.0f)};
+    PathTracer::Settings settings;
+    settings.bounces = 1;
+    const auto s = measure(scene, 256, settings);
+    expectExact(isGrid ? "a wisp, grid" : "a wisp", s.mean.y, s.error.y, exact, 3.0 / std::sqrt(256.0 * 256.0));
   }
 }
 

@@ -74,7 +74,7 @@ TEST_F(MediaPhysics, ChannelsOfAnyRatioAreUnbiased) {
   const auto s = measure(scene, 640);
   expectExact("R tau 0.1", s.mean.x, s.meanError.x, .047120, 0.002);
   expectExact("R tau 100", s.mean.y, s.meanError.y, .752721, 0.004);
-  expectExact("T of the absorber", s.mean.z, s.meanError.z, std::exp(-0.7), 0.004);
+  EXPECT_NEAR(s.mean.z, std::exp(-0.7), 1e-6) << "the absorber: a weight, without noise";
 
   // And g a channel each: tau 1, a = 0.9.
   medium = homogeneous(glm::dvec3(.9), glm::dvec3(.1), 0.0);

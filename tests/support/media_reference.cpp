@@ -41,6 +41,7 @@ double fresnel(double cosI, double eta) {
 namespace {
 struct Channels {
   Real extinction[3], scattering[3], transmittance[3];
+  Real rate[3], flies[3];  ///< of collisions drawn, and the probability of flying that far
 };
 Channels channelsOf(const Medium& medium, double t) {
   Channels c;
@@ -48,6 +49,8 @@ Channels channelsOf(const Medium& medium, double t) {
     c.scattering[i] = medium.scattering[i];
     c.extinction[i] = c.scattering[i] + static_cast<Real>(medium.absorption[i]);
     c.transmittance[i] = std::exp(-c.extinction[i] * static_cast<Real>(t));
+    c.rate[i] = c.scattering[i] < 0.25L * c.extinction[i] ? c.scattering[i] : c.extinction[i];
+    c.flies[i] = std::exp(-c.rate[i] * static_cast<Real>(t));
   }
   return c;
 }
@@ -56,7 +59,7 @@ Channels channelsOf(const Medium& medium, double t) {
 glm::dvec3 scatteringWeight(const Medium& medium, const glm::dvec3& q, double t) {
   const Channels c = channelsOf(medium, t);
   Real pdf = 0.0L;
-  for (int i = 0; i < 3; ++i) pdf += static_cast<Real>(q[i]) * c.extinction[i] * c.transmittance[i];
+  for (int i = 0; i < 3; ++i) pdf += static_cast<Real>(q[i]) * c.rate[i] * c.flies[i];
   glm::dvec3 weight;
   for (int i = 0; i < 3; ++i) weight[i] = static_cast<double>(c.scattering[i] * c.transmittance[i] / pdf);
   return weight;
@@ -65,7 +68,7 @@ glm::dvec3 scatteringWeight(const Medium& medium, const glm::dvec3& q, double t)
 glm::dvec3 passageWeight(const Medium& medium, const glm::dvec3& q, double d) {
   const Channels c = channelsOf(medium, d);
   Real probability = 0.0L;
-  for (int i = 0; i < 3; ++i) probability += static_cast<Real>(q[i]) * c.transmittance[i];
+  for (int i = 0; i < 3; ++i) probability += static_cast<Real>(q[i]) * c.flies[i];
   glm::dvec3 weight;
   for (int i = 0; i < 3; ++i) weight[i] = static_cast<double>(c.transmittance[i] / probability);
   return weight;

@@ -140,18 +140,5 @@ TEST(Clearance, DenseIsWhatScattersManyTimes) {
   EXPECT_FALSE(dense({0.05f, 0.05f, 0.05f}, {0.0f, 0.0f, 0.0f}, 0.99f, 300.0));  // straight on
 }
 
-TEST(Clearance, DarkIsWhatHardlyAnyLightComesBackFrom) {
-  Medium medium;
-  const auto dark = [&](glm::vec3 scattering, glm::vec3 absorption, float g, double extent) {
-    medium.scattering = scattering, medium.absorption = absorption, medium.anisotropy = glm::vec3(g);
-    return isDark(medium, extent);
-  };
-  EXPECT_TRUE(dark({7.8f, 8.1f, 8.5f}, {4.8f, 6.6f, 8.8f}, 0.9f, 20.0));  // a block of espresso
-  EXPECT_FALSE(dark({7.8f, 8.1f, 8.5f}, {4.8f, 6.6f, 8.8f}, 0.9f, 0.1));  // a film of it
-  EXPECT_FALSE(dark({7.8f, 8.1f, 8.5f}, {4.8f, 6.6f, 8.8f}, 0.0f, 20.0));  // which turns light round
-  EXPECT_FALSE(dark({0.0f, 0.0f, 0.0f}, {0.0f, 6.0f, 6.0f}, 0.0f, 20.0));  // red glass
-  EXPECT_FALSE(dark({18.2f, 20.4f, 22.4f}, {0.0015f, 0.0046f, 0.02f}, 0.7f, 20.0));  // milk
-}
-
 }  // namespace
 }  // namespace lucerna
