@@ -15,7 +15,9 @@ namespace {
 
 constexpr GLuint kPixelsUnit = 57, kDeltasUnit = 58, kCornersUnit = 59, kFrames = 9, kPixels = 2, kLargeList = 3,
                  kFactors = 4, kSources = 5, kExactList = 6;
-constexpr int kHemicubesEach = 8;  // of a work group over patches
+constexpr GLuint kLists = 0;
+constexpr std::size_t kListHead = 2 * HemicubeBatch::kMostHemicubes;  ///< words: counts of two lists each
+constexpr int kHemicubesEach = 4;  ///< that a lane of hemicube_points.comp visits
 /// An indirect dispatch with one lane per entry reaches no further.
 constexpr std::size_t kMostListed = std::size_t{65535} * HemicubeBatch::kGroup;
 constexpr double kSmallSources = 0.1;  // of the area: larger sources need no special care
@@ -120,6 +122,7 @@ HemicubeBatch::HemicubeBatch(const gl::Capabilities& capabilities, const Radiosi
     : mesh_(&mesh),
       settings_(settings),
       smallSources_(smallSourcesOf(mesh)),
+      isSoftware_(capabilities.softwareRenderer),
       patchCount_(static_cast<int>(mesh.patches.size())),
       smallSourceCount_(static_cast<int>(std::count(smallSources_.begin(), smallSources_.end(), 1u))) {
   const std::size_t patches = mesh.patches.size();
@@ -136,6 +139,8 @@ HemicubeBatch::HemicubeBatch(const gl::Capabilities& capabilities, const Radiosi
   factors_.clear();
   exactList_ = storage("exact form factors", 8 + mostListed_ * sizeof(glm::uvec2));
   largeList_ = storage("large patches", 16 + mostListed_ * sizeof(GLuint));
+  if (listsPatches(settings.visibility)) return;
+  lists_ = storage("patches by pixels", (kListHead + batch * patches) * sizeof(GLuint));
 }
 
 glm::dmat3 HemicubeBatch::axesOf(int index, int roll) const {
@@ -179,6 +184,10 @@ void HemicubeBatch::start(const HemicubeRange& range, int roll) {
   largeList_.bindStorage(kLargeList);
   constexpr GLuint kNoGroups[4] = {0, 1, 1, 0};
   largeList_.upload(0, sizeof kNoGroups, kNoGroups);
+  if (listsPatches(settings_.visibility)) return;
+  constexpr std::array<GLuint, kListHead> kNoEntries{};
+  lists_.upload(0, sizeof kNoEntries, kNoEntries.data());
+  lists_.bindStorage(kLists);
 }
 
 void HemicubeBatch::use(const gl::Program& program, const HemicubeRange& range) const {
@@ -191,7 +200,6 @@ void HemicubeBatch::use(const gl::Program& program, const HemicubeRange& range) 
   program.set("pixelSize", 2.0f / static_cast<float>(resolution));
   program.set("firstPatch", range.first);
   program.set("hemicubes", range.count);
-  program.set("hemicubesEach", kHemicubesEach);
   program.set("sourceCount", smallSourceCount_);
   program.set("exactPixels", settings_.exactPixels);
   program.set("nearDistance", settings_.nearDistance);
@@ -199,12 +207,18 @@ void HemicubeBatch::use(const gl::Program& program, const HemicubeRange& range) 
 }
 
 glm::ivec3 HemicubeBatch::groupsOfPatches(const HemicubeRange& range, int patchCount) {
-  return {(range.count + kHemicubesEach - 1) / kHemicubesEach, patchCount, 1};
+  return {patchCount, (range.count + kHemicubesEach - 1) / kHemicubesEach, 1};
 }
+
+// A software renderer pays for starting a work group, a GPU for cores without work.
+glm::ivec3 HemicubeBatch::groupsOfLists(const HemicubeRange& range) const {
+  return {isSoftware_ ? 1 : 16, range.count, 1};
+}
+int HemicubeBatch::groupsOfExact() const { return isSoftware_ ? 16 : 256; }
 
 std::size_t HemicubeBatch::gpuBytes() const {
   return corners_.bytes() + sources_.bytes() + deltaFactors_.bytes() + frames_.bytes() + pixels_.bytes() +
-         factors_.bytes() + exactList_.bytes() + largeList_.bytes();
+         factors_.bytes() + exactList_.bytes() + largeList_.bytes() + lists_.bytes();
 }
 
 }  // namespace lucerna

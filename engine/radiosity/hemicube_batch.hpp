@@ -42,8 +42,12 @@ class HemicubeBatch {
   void start(const HemicubeRange& range, int roll);
   /// Makes a program current, with its uniforms.
   void use(const gl::Program& program, const HemicubeRange& range) const;
-  /// Work groups that cover all patches of all hemicubes, several hemicubes each.
+  /// Lanes along x and groups along y for all patches, each of several hemicubes (hemicube_points.comp).
   static glm::ivec3 groupsOfPatches(const HemicubeRange& range, int patchCount);
+  /// Work groups along x that share each hemicube's lists (hemicube_lists.glsl).
+  glm::ivec3 groupsOfLists(const HemicubeRange& range) const;
+  /// Work groups that share the list of closed forms.
+  int groupsOfExact() const;
 
   gl::BufferTexture& pixels() { return pixels_; }
   gl::Buffer& factors() { return factors_; }
@@ -62,10 +66,11 @@ class HemicubeBatch {
   const RadiosityMesh* mesh_;
   HemicubeSettings settings_;
   std::vector<std::uint32_t> smallSources_;
+  bool isSoftware_ = false;
   int patchCount_ = 0, smallSourceCount_ = 0, capacity_ = 0;
   std::size_t mostListed_ = 0;
   gl::BufferTexture corners_, deltaFactors_, pixels_;
-  gl::Buffer sources_, frames_, factors_, exactList_, largeList_;
+  gl::Buffer sources_, frames_, factors_, exactList_, largeList_, lists_;
 };
 
 /// Hemicubes per patch: one, unless they are turned at random.
