@@ -31,12 +31,11 @@ RasterMethod::RasterMethod(gl::ProgramLibrary& programs, HemicubeBatch& batch)
 void RasterMethod::findVisible(const HemicubeRange& range) {
   batch_.pixels().clear();
   batch_.factors().clear();
-  const glm::ivec3 all = HemicubeBatch::groupsOfPatches(range, batch_.patchCount()),
-                   lists = batch_.groupsOfLists(range);
+  const glm::ivec3 lists = batch_.groupsOfLists(range);
   {
     const gl::ComputePass pass(points_.name(), kWithCounts);
     batch_.use(points_, range);
-    pass.dispatch(all, glm::ivec3(kGroup, 1, 1));
+    pass.dispatch(batch_.groupsOfBlocks(), glm::ivec3(1));
   }
   {
     const gl::ComputePass pass(depth_.name(), kWithCounts);

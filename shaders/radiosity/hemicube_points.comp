@@ -1,7 +1,7 @@
 // Hemicubes: patches whose bounding box on a face holds at most one pixel's centre. In a fine mesh most are such, and
 // need no walk over pixels.
 // SUM 0, pass 1: draws those that cover this pixel and lists them, lists patches of several pixels or faces for the
-// walk (hemicube_depth.comp). x: triangles, y: kHemicubesEach of the batch.
+// walk (hemicube_depth.comp). x: blocks of 64 triangles, y: kHemicubesEach of the batch.
 // SUM 1, after all passes that draw: their form factors. x: groups that share a hemicube's list, y: hemicubes.
 #include "radiosity/hemicube_walk.glsl"
 #include "radiosity/hemicube_lists.glsl"
@@ -13,6 +13,8 @@ layout(binding = 58) uniform samplerBuffer deltaFactors;  // the full face, then
 #else
 layout(std430, binding = 2) buffer Keys { uint keys[]; };
 layout(std430, binding = 5) readonly buffer Sources { uint sources[]; };  // 1 where a patch is a small source
+// By kHemicubesEach: the blocks that are not below the horizon of all of them; ~0 after the last.
+layout(std430, binding = 1) readonly buffer Blocks { uint blocks[]; };
 const int kHemicubesEach = 4;
 #endif
 
@@ -77,8 +79,10 @@ void visit(int hemicube, int index, Triangle world, float nearness, bool source)
 }
 
 void main() {
-  int index = int(gl_GlobalInvocationID.x), first = int(gl_WorkGroupID.y) * kHemicubesEach;
-  if (index >= patchCount) return;
+  uint block = blocks[gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x],
+       lane = block * 64u + gl_LocalInvocationID.x;
+  if (block == 0xffffffffu || lane >= uint(patchCount)) return;
+  int index = int(lane), first = int(gl_WorkGroupID.y) * kHemicubesEach;
   Triangle world = worldTriangle(index);
   float nearness = nearnessOf(index);
   bool source = sources[index] != 0u;
