@@ -36,7 +36,7 @@ void main() {
     item += gl_NumWorkGroups.x;
   } while (item < last);  // ends: item grows
 #else
-  int hemicube = int(gl_WorkGroupID.y), slot = int(gl_GlobalInvocationID.x), end = int(counts[hemicube + kWalks]);
+  int hemicube = int(gl_WorkGroupID.y), slot = int(gl_GlobalInvocationID.x), end = int(listLengths[hemicube + kWalks]);
   if (slot >= end) return;
   Frame frame = frames[hemicube];
   do {

@@ -1,7 +1,7 @@
 // The patches that later passes of raster visit, by hemicube. Each hemicube has as many entries as there are patches:
 // from the front those of one pixel (hemicube_points.comp), from the back those to walk over (hemicube_depth.comp).
 layout(std430, binding = 0) buffer PatchLists {
-  uint counts[512];  // of kPoints, of kWalks
+  uint listLengths[512];  // of kPoints, of kWalks
   uint patches[];
 };
 const int kPoints = 0, kWalks = 256;

@@ -73,15 +73,16 @@ void visit(int hemicube, int index, Triangle world, float nearness, bool source)
   bool above = isAbove(frame, t, index, firstPatch + hemicube), draws = above && p.covered, walks = above && !p.within;
   if (draws) atomicMax(keys[hemicube * pixelsPerHemicube() + p.pixel], p.key);
   if (draws || walks || above && source) {
-    int slot = int(atomicAdd(counts[hemicube + (walks ? kWalks : kPoints)], 1u));
-    patches[walks ? walkEntry(hemicube, slot) : pointEntry(hemicube, slot)] = uint(index);
+    uint slot = atomicAdd(listLengths[hemicube + (walks ? kWalks : kPoints)], 1u);
+    patches[walks ? walkEntry(hemicube, int(slot)) : pointEntry(hemicube, int(slot))] = uint(index);
   }
 }
 
 void main() {
-  uint block = blocks[gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x],
-       lane = block * 64u + gl_LocalInvocationID.x;
-  if (block == 0xffffffffu || lane >= uint(patchCount)) return;
+  uint at = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+  if (at >= uint(blocks.length()) || blocks[at] == 0xffffffffu) return;
+  uint lane = blocks[at] * 64u + gl_LocalInvocationID.x;
+  if (lane >= uint(patchCount)) return;
   int index = int(lane), first = int(gl_WorkGroupID.y) * kHemicubesEach;
   Triangle world = worldTriangle(index);
   float nearness = nearnessOf(index);
@@ -94,7 +95,7 @@ void main() {
 }
 #else
 void main() {
-  int hemicube = int(gl_WorkGroupID.y), slot = int(gl_GlobalInvocationID.x), end = int(counts[hemicube + kPoints]);
+  int hemicube = int(gl_WorkGroupID.y), slot = int(gl_GlobalInvocationID.x), end = int(listLengths[hemicube + kPoints]);
   if (slot >= end) return;
   Frame frame = frames[hemicube];
   do {

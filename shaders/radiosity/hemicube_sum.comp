@@ -113,7 +113,7 @@ void main() {
   int entry = int(keptList[place].x);
   visit(place, entry / patchCount, entry % patchCount, frames[entry / patchCount]);
 #else
-  int hemicube = int(gl_WorkGroupID.y), slot = int(gl_GlobalInvocationID.x), end = int(counts[hemicube + kWalks]);
+  int hemicube = int(gl_WorkGroupID.y), slot = int(gl_GlobalInvocationID.x), end = int(listLengths[hemicube + kWalks]);
   if (slot >= end) return;
   Frame frame = frames[hemicube];
   do {
