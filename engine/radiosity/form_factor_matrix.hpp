@@ -16,6 +16,8 @@ class FormFactorMatrix {
  public:
   FormFactorMatrix() : starts_{0} {}
 
+  /// Memory for so many entries in all; more may follow.
+  void reserve(std::size_t entries);
   /// Appends the next row.
   void appendRow(std::span<const std::uint32_t> patches, std::span<const float> factors);
   std::size_t rowCount() const { return starts_.size() - 1; }
@@ -43,13 +45,13 @@ class FormFactorMatrix {
   double reciprocityError(std::span<const double> areas) const;
 
  private:
-  /// A_i F_ij by columns j: `rows` has each entry's i.
+  /// A_i F_ij by some columns j: `rows` has each entry's i.
   struct Columns {
     std::vector<std::size_t> starts;
     std::vector<std::uint32_t> rows;
     std::vector<float> flux;
   };
-  Columns fluxByColumns(std::span<const double> areas) const;
+  void fluxByColumns(std::span<const double> areas, std::size_t first, std::size_t last, Columns& columns) const;
   struct SymmetricFlux;
   SymmetricFlux symmetricFlux(std::span<const double> areas, std::span<const std::uint32_t> sources,
                               double fewPixels) const;

@@ -15,7 +15,9 @@ namespace {
 
 constexpr GLuint kPixelsUnit = 57, kDeltasUnit = 58, kCornersUnit = 59, kFrames = 9, kPixels = 2, kLargeList = 3,
                  kFactors = 4, kSources = 5, kExactList = 6;
-constexpr int kHemicubesEach = 8;  // of a work group over patches
+constexpr GLuint kLists = 0, kBlocks = 1;
+constexpr std::size_t kListHead = 2 * HemicubeBatch::kMostHemicubes;  ///< words: counts of two lists each
+constexpr int kHemicubesEach = 4;  ///< that a lane of hemicube_points.comp visits
 /// An indirect dispatch with one lane per entry reaches no further.
 constexpr std::size_t kMostListed = std::size_t{65535} * HemicubeBatch::kGroup;
 constexpr double kSmallSources = 0.1;  // of the area: larger sources need no special care
@@ -120,6 +122,7 @@ HemicubeBatch::HemicubeBatch(const gl::Capabilities& capabilities, const Radiosi
     : mesh_(&mesh),
       settings_(settings),
       smallSources_(smallSourcesOf(mesh)),
+      isSoftware_(capabilities.softwareRenderer),
       patchCount_(static_cast<int>(mesh.patches.size())),
       smallSourceCount_(static_cast<int>(std::count(smallSources_.begin(), smallSources_.end(), 1u))) {
   const std::size_t patches = mesh.patches.size();
@@ -136,6 +139,13 @@ HemicubeBatch::HemicubeBatch(const gl::Capabilities& capabilities, const Radiosi
   factors_.clear();
   exactList_ = storage("exact form factors", 8 + mostListed_ * sizeof(glm::uvec2));
   largeList_ = storage("large patches", 16 + mostListed_ * sizeof(GLuint));
+  if (listsPatches(settings.visibility)) return;
+  lists_ = storage("patches by pixels", (kListHead + batch * patches) * sizeof(GLuint));
+  blocks_.resize((patches + kGroup - 1) / kGroup);
+  for (std::size_t i = 0; i < patches; ++i)
+    for (const glm::dvec3& corner : mesh.corners(mesh.patches[i])) blocks_[i / kGroup].add(corner);
+  blockList_ =
+      storage("blocks of patches", blocks_.size() * ((batch + kHemicubesEach - 1) / kHemicubesEach) * sizeof(GLuint));
 }
 
 glm::dmat3 HemicubeBatch::axesOf(int index, int roll) const {
@@ -151,11 +161,15 @@ glm::dmat3 HemicubeBatch::axesOf(int index, int roll) const {
   return {u, glm::cross(patch.faceNormal, u), patch.faceNormal};
 }
 
+/// Height above a patch's plane below which a corner lies in it.
+double HemicubeBatch::inPlane(const Patch& patch) const {
+  return std::max(1e-4 * std::sqrt(patch.area), 4e-7 * mesh_->extent);
+}
+
 HemicubeBatch::Frame HemicubeBatch::frameOf(int index, int roll) const {
   const Patch& patch = mesh_->patches[static_cast<std::size_t>(index)];
   const glm::dmat3 axes = axesOf(index, roll);
-  const double inPlane = std::max(1e-4 * std::sqrt(patch.area), 4e-7 * mesh_->extent);
-  return {glm::vec4(glm::vec3(patch.centroid), static_cast<float>(1.0 / inPlane)),
+  return {glm::vec4(glm::vec3(patch.centroid), static_cast<float>(1.0 / inPlane(patch))),
           glm::vec4(glm::vec3(axes[0]), patch.hidden), glm::vec4(glm::vec3(axes[1]), 0.0f),
           glm::vec4(glm::vec3(axes[2]), 0.0f)};
 }
@@ -179,6 +193,41 @@ void HemicubeBatch::start(const HemicubeRange& range, int roll) {
   largeList_.bindStorage(kLargeList);
   constexpr GLuint kNoGroups[4] = {0, 1, 1, 0};
   largeList_.upload(0, sizeof kNoGroups, kNoGroups);
+  if (listsPatches(settings_.visibility)) return;
+  constexpr std::array<GLuint, kListHead> kNoEntries{};
+  lists_.upload(0, sizeof kNoEntries, kNoEntries.data());
+  lists_.bindStorage(kLists);
+  listBlocks(range);
+}
+
+/// For each work group's hemicubes, the blocks of patches that are not below the horizon of all of them.
+void HemicubeBatch::listBlocks(const HemicubeRange& range) {
+  const auto isAbove = [&](const Bounds& block, int index) {
+    const Patch& patch = mesh_->patches[static_cast<std::size_t>(index)];
+    const glm::dvec3 n = patch.faceNormal;
+    const double height = glm::dot(n, block.centre() - patch.centroid) + glm::dot(glm::abs(n), 0.5 * block.extent());
+    return height > 0.25 * inPlane(patch);  // less than 1: the shader's heights are rounded
+  };
+  std::vector<std::vector<GLuint>> lists;
+  std::size_t longest = 1;
+  for (int first = 0; first < range.count; first += kHemicubesEach) {
+    std::vector<GLuint>& list = lists.emplace_back();
+    for (GLuint block = 0; block < blocks_.size(); ++block) {
+      bool above = false;
+      for (int k = first; k < std::min(first + kHemicubesEach, range.count) && !above; ++k)
+        above = isAbove(blocks_[block], range.first + k);
+      if (above) list.push_back(block);
+    }
+    longest = std::max(longest, list.size());
+  }
+  std::vector<GLuint> words;
+  for (std::vector<GLuint>& list : lists) {
+    list.resize(longest, ~0u);
+    words.insert(words.end(), list.begin(), list.end());
+  }
+  blockList_.upload(0, words.size() * sizeof(GLuint), words.data());
+  blockList_.bindStorage(kBlocks);
+  blockGroups_ = glm::ivec3(longest, lists.size(), 1);
 }
 
 void HemicubeBatch::use(const gl::Program& program, const HemicubeRange& range) const {
@@ -191,20 +240,21 @@ void HemicubeBatch::use(const gl::Program& program, const HemicubeRange& range) 
   program.set("pixelSize", 2.0f / static_cast<float>(resolution));
   program.set("firstPatch", range.first);
   program.set("hemicubes", range.count);
-  program.set("hemicubesEach", kHemicubesEach);
   program.set("sourceCount", smallSourceCount_);
   program.set("exactPixels", settings_.exactPixels);
   program.set("nearDistance", settings_.nearDistance);
   program.set("mostParts", settings_.mostParts);
 }
 
-glm::ivec3 HemicubeBatch::groupsOfPatches(const HemicubeRange& range, int patchCount) {
-  return {(range.count + kHemicubesEach - 1) / kHemicubesEach, patchCount, 1};
+// A software renderer pays for starting a work group, a GPU for cores without work.
+glm::ivec3 HemicubeBatch::groupsOfLists(const HemicubeRange& range) const {
+  return {isSoftware_ ? 1 : 16, range.count, 1};
 }
+int HemicubeBatch::groupsOfExact() const { return isSoftware_ ? 16 : 256; }
 
 std::size_t HemicubeBatch::gpuBytes() const {
   return corners_.bytes() + sources_.bytes() + deltaFactors_.bytes() + frames_.bytes() + pixels_.bytes() +
-         factors_.bytes() + exactList_.bytes() + largeList_.bytes();
+         factors_.bytes() + exactList_.bytes() + largeList_.bytes() + lists_.bytes() + blockList_.bytes();
 }
 
 }  // namespace lucerna

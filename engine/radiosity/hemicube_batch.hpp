@@ -42,8 +42,12 @@ class HemicubeBatch {
   void start(const HemicubeRange& range, int roll);
   /// Makes a program current, with its uniforms.
   void use(const gl::Program& program, const HemicubeRange& range) const;
-  /// Work groups that cover all patches of all hemicubes, several hemicubes each.
-  static glm::ivec3 groupsOfPatches(const HemicubeRange& range, int patchCount);
+  /// Work groups of blocks of patches, each of several hemicubes (hemicube_points.comp), after start().
+  const glm::ivec3& groupsOfBlocks() const { return blockGroups_; }
+  /// Work groups along x that share each hemicube's lists (hemicube_lists.glsl).
+  glm::ivec3 groupsOfLists(const HemicubeRange& range) const;
+  /// Work groups that share the list of closed forms.
+  int groupsOfExact() const;
 
   gl::BufferTexture& pixels() { return pixels_; }
   gl::Buffer& factors() { return factors_; }
@@ -58,14 +62,19 @@ class HemicubeBatch {
     glm::vec4 origin, u, v, n;
   };
   Frame frameOf(int patch, int roll) const;
+  double inPlane(const Patch& patch) const;
+  void listBlocks(const HemicubeRange& range);
 
   const RadiosityMesh* mesh_;
   HemicubeSettings settings_;
   std::vector<std::uint32_t> smallSources_;
+  bool isSoftware_ = false;
   int patchCount_ = 0, smallSourceCount_ = 0, capacity_ = 0;
   std::size_t mostListed_ = 0;
   gl::BufferTexture corners_, deltaFactors_, pixels_;
-  gl::Buffer sources_, frames_, factors_, exactList_, largeList_;
+  gl::Buffer sources_, frames_, factors_, exactList_, largeList_, lists_, blockList_;
+  std::vector<Bounds> blocks_;  ///< of kGroup patches each
+  glm::ivec3 blockGroups_{0};
 };
 
 /// Hemicubes per patch: one, unless they are turned at random.

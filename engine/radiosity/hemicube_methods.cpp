@@ -21,23 +21,39 @@ constexpr int kGroup = HemicubeBatch::kGroup;
 
 RasterMethod::RasterMethod(gl::ProgramLibrary& programs, HemicubeBatch& batch)
     : HemicubeMethod(batch),
+      points_(programs.loadCompute("hemicube points", "radiosity/hemicube_points.comp",
+                                   {{"SUM", 0}, {"ITEMS", 0}, {"DRAWN", 0}})),
       depth_(programs.loadCompute("hemicube depth", "radiosity/hemicube_depth.comp", {{"LARGE", 0}})),
-      depthLarge_(programs.loadCompute("hemicube depth large", "radiosity/hemicube_depth.comp", {{"LARGE", 1}})) {}
+      depthLarge_(programs.loadCompute("hemicube depth large", "radiosity/hemicube_depth.comp", {{"LARGE", 1}})),
+      pointFactors_(programs.loadCompute("hemicube point factors", "radiosity/hemicube_points.comp",
+                                         {{"SUM", 1}, {"ITEMS", 0}, {"DRAWN", 0}})) {}
 
 void RasterMethod::findVisible(const HemicubeRange& range) {
   batch_.pixels().clear();
+  batch_.factors().clear();
+  const glm::ivec3 lists = batch_.groupsOfLists(range);
+  {
+    const gl::ComputePass pass(points_.name(), kWithCounts);
+    batch_.use(points_, range);
+    pass.dispatch(batch_.groupsOfBlocks(), glm::ivec3(1));
+  }
   {
     const gl::ComputePass pass(depth_.name(), kWithCounts);
     batch_.use(depth_, range);
-    dispatchOverPatches(pass, range);
+    pass.dispatch(lists, glm::ivec3(1));
   }
-  const gl::ComputePass pass(depthLarge_.name(), kStorage | gl::Barrier::textureFetch);
-  batch_.use(depthLarge_, range);
-  pass.dispatchIndirect(batch_.largeList());
+  {
+    const gl::ComputePass pass(depthLarge_.name(), kStorage | gl::Barrier::textureFetch);
+    batch_.use(depthLarge_, range);
+    pass.dispatchIndirect(batch_.largeList());
+  }
+  const gl::ComputePass pass(pointFactors_.name(), kStorage);
+  batch_.use(pointFactors_, range);
+  pass.dispatch(lists, glm::ivec3(1));
 }
 
 void RasterMethod::dispatchOverPatches(const gl::ComputePass& pass, const HemicubeRange& range) const {
-  pass.dispatch(HemicubeBatch::groupsOfPatches(range, batch_.patchCount()), glm::ivec3(1, kGroup, 1));
+  pass.dispatch(batch_.groupsOfLists(range), glm::ivec3(1));
 }
 
 void RasterMethod::readFactors(gl::Staging& staging, DrawnHemicubes& drawn) const {

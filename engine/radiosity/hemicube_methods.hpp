@@ -40,7 +40,7 @@ class RasterMethod : public HemicubeMethod {
   void readFactors(gl::Staging& staging, DrawnHemicubes& drawn) const override;
 
  private:
-  const gl::Program &depth_, &depthLarge_;
+  const gl::Program &points_, &depth_, &depthLarge_, &pointFactors_;
 };
 
 /// Methods whose pixels name their patches: these are listed once each, and only they are visited later.

@@ -17,7 +17,6 @@ namespace lucerna {
 
 namespace {
 
-constexpr int kExactGroups = 256;
 constexpr double kIterationsOfPatch = 8.0;  // by raster: a patch's setup
 constexpr double kIterationsOfPixel = 32.0;  // by raster: a pixel's layers
 constexpr int kMeasured = 32;  // hemicubes in a batch for measuring the cost
@@ -186,7 +185,7 @@ DrawnHemicubes Hemicubes::draw(int first, int count, int roll) {
       rays_->bind();
       exact_->set("raysOrigin", glm::vec3(rays_->origin()));
     }
-    pass.dispatch(glm::ivec3(kExactGroups, 1, 1), glm::ivec3(1));
+    pass.dispatch(glm::ivec3(batch_->groupsOfExact(), 1, 1), glm::ivec3(1));
   }
   DrawnHemicubes drawn;
   drawn.first = first;

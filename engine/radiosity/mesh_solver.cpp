@@ -277,10 +277,16 @@ class MeshSolver {
 
   /// Adds rows; drops the matrix once it is clear that it will not fit in memory.
   void add(const FormFactorRows& rows, FormFactors& factors) const {
+    const bool areFirst = factors.rowCount() == 0;
     factors.append(rows);
     const double each = input_.scene.motion ? kBytesPerEntryInMotion : kBytesPerEntry,
-                 bytes = factors.expectedEntries(count_) * each;
-    if (!factors.matrix || bytes <= static_cast<double>(memory_)) return;
+                 entries = factors.expectedEntries(count_), bytes = entries * each;
+    if (!factors.matrix) return;
+    if (bytes <= static_cast<double>(memory_)) {
+      // At once: while it grew, all of it would be copied again and again.
+      if (areFirst) factors.matrix->reserve(static_cast<std::size_t>(1.2 * entries));
+      return;
+    }
     logWarning(
         "radiosity: the form factors of {} patches need about {} MiB, {} are available: they are {} for each product",
         count_, static_cast<std::size_t>(bytes) >> 20, memory_ >> 20,

@@ -3,9 +3,10 @@
 // the sign of det = a . (b x c); the inverse distance along d is (their sum) / det [Olano1997]. So nothing is clipped,
 // there is no near plane, and triangles that touch the centre still block.
 //
-// There are three ways to find the patch that each pixel sees: raster (hemicube_depth.comp), rays (hemicube_rays.comp)
-// and an item buffer (hemicube_item.*). hemicube_sum.comp sums each patch's delta form factors, always in the same
-// order. Pixel layout of a hemicube: the full face N x N, then four half faces N x N/2, rows upwards from the horizon.
+// There are three ways to find the patch that each pixel sees: raster (hemicube_points.comp, hemicube_depth.comp),
+// rays (hemicube_rays.comp) and an item buffer (hemicube_item.*). hemicube_sum.comp sums each patch's delta form
+// factors, always in the same order. Pixel layout of a hemicube: the full face N x N, then four half faces N x N/2,
+// rows upwards from the horizon.
 // Corners come from a buffer texture, which llvmpipe gathers from three times as fast as from a storage block.
 layout(binding = 59) uniform samplerBuffer corners;  // three texels per patch
 uniform int patchCount;

@@ -1,12 +1,14 @@
-// Hemicubes, pass 1: each pixel's nearest surface.
-// LARGE 0: x: triangles, y: hemicubes of the batch. LARGE 1: the large triangles listed by it, one work group each.
+// Hemicubes by raster: each pixel's nearest surface, of patches that hemicube_points.comp has listed.
+// LARGE 0: x: groups that share a hemicube's list, y: hemicubes of the batch. LARGE 1: the large triangles listed by
+// it, one work group each.
 #include "radiosity/hemicube_walk.glsl"
+#include "radiosity/hemicube_lists.glsl"
+#include "radiosity/hemicube_large.glsl"
 
 layout(std430, binding = 2) buffer Keys { uint keys[]; };
 
-void draw(FaceTriangle f, int face, int firstPixel, int index) {
+void draw(FaceTriangle f, int face, int firstPixel, int index, float nearness) {
   Walk w = beginWalk(f, face, firstPixel + facePixels(face));
-  float nearness = nearnessOf(index);
   do {
     vec4 value = valueAt(w);
     if (covers(w, value)) atomicMax(keys[w.rowStart + w.column], keyOf(value.w * nearness, f.front, uint(index)));
@@ -16,26 +18,32 @@ void draw(FaceTriangle f, int face, int firstPixel, int index) {
 
 void main() {
 #if LARGE
-  for (uint item = gl_WorkGroupID.x; item < uint(large.length()) && item < largeCount; item += gl_NumWorkGroups.x) {
+  uint item = gl_WorkGroupID.x, last = min(uint(large.length()), largeCount);
+  if (item >= last) return;
+  do {
     int hemicube = int(large[item]) / patchCount, index = int(large[item]) % patchCount;
     Triangle t = triangleOf(frames[hemicube], index);
-    for (int row = int(gl_LocalInvocationID.x); row < 3 * faceSize; row += 64) {
+    int row = int(gl_LocalInvocationID.x);
+    do {
       ivec2 place = faceAndRow(row);
       FaceTriangle f = onFace(place.x, t);
       f.low.y = max(f.low.y, place.y);
       f.high.y = min(f.high.y, place.y);
-      draw(f, place.x, hemicube * pixelsPerHemicube(), index);
-    }
-  }
+      if (row >= 3 * faceSize) f.high.y = -1;
+      draw(f, place.x, hemicube * pixelsPerHemicube(), index, nearnessOf(index));
+      row += 64;
+    } while (row < 3 * faceSize);  // ends: row grows
+    item += gl_NumWorkGroups.x;
+  } while (item < last);  // ends: item grows
 #else
-  int index = int(gl_WorkGroupID.y * 64u + gl_LocalInvocationID.x);
-  if (index >= patchCount) return;
-  Triangle world = worldTriangle(index);
-  int hemicube = int(gl_WorkGroupID.x) * hemicubesEach, end = min(hemicube + hemicubesEach, hemicubes);
+  int hemicube = int(gl_WorkGroupID.y), slot = int(gl_GlobalInvocationID.x), end = int(listLengths[hemicube + kWalks]);
+  if (slot >= end) return;
+  Frame frame = frames[hemicube];
   do {
-    Frame frame = frames[hemicube];
-    Triangle t = toFrame(frame, world);
-    uint faces = isAbove(frame, t, index, firstPatch + hemicube) ? facesOf(t) : 0u;
+    int index = int(patches[walkEntry(hemicube, slot)]);
+    Triangle t = triangleOf(frame, index);
+    float nearness = nearnessOf(index);
+    uint faces = facesOf(t);
     bool tooLarge = false;
     do {
       int face = lowestFace(faces);
@@ -43,10 +51,11 @@ void main() {
       bool large = isLarge(f) && faces != 0u;
       tooLarge = tooLarge || large;
       if (large || faces == 0u) f.high.y = -1;
-      draw(f, face, hemicube * pixelsPerHemicube(), index);
+      draw(f, face, hemicube * pixelsPerHemicube(), index, nearness);
       faces &= faces - 1u;
     } while (faces != 0u);  // ends: each iteration clears a bit
     if (tooLarge) listLarge(hemicube * patchCount + index);
-  } while (++hemicube < end);  // ends: both follow from uniforms
+    slot += int(gl_NumWorkGroups.x) * 64;
+  } while (slot < end);  // ends: slot grows
 #endif
 }

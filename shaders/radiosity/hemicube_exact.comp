@@ -1,6 +1,6 @@
-// Hemicubes, pass 3: replaces pixel sums by the closed form where it is more accurate; pixels then supply only
+// Hemicubes, last pass: replaces pixel sums by the closed form where it is more accurate; pixels then supply only
 // visibility. That applies to triangles that cover many pixels (exact except at the border), near ones (averaged over
-// the receiving patch too [BaumRushmeierWinget1989]) and small sources. Each invocation takes entries of pass 2's list
+// the receiving patch too [BaumRushmeierWinget1989]) and small sources. Each invocation takes entries of their list
 // with the whole dispatch as stride.
 #include "lib/clamped_int.glsl"
 #include "radiosity/hemicube.glsl"
@@ -94,7 +94,9 @@ bool isSeen(Frame frame, int self, Triangle t) {
 
 void main() {
   uint stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
-  for (uint i = gl_GlobalInvocationID.x; i < uint(list.length()) && i < listed; i += stride) {
+  uint i = gl_GlobalInvocationID.x, last = min(uint(list.length()), listed);
+  if (i >= last) return;
+  do {
 #if ITEMS
     int entry = int(keptList[list[i].x].x);
 #else
@@ -108,5 +110,6 @@ void main() {
     if (share < 0.0) share = isSeen(frame, firstPatch + hemicube, t) ? 1.0 : 0.0;
 #endif
     list[i].y = floatBitsToUint(share * receivedFrom(frame, firstPatch + hemicube, t));
-  }
+    i += stride;
+  } while (i < last);  // ends: stride is above 0
 }

@@ -6,22 +6,15 @@
 #include "radiosity/hemicube.glsl"
 
 layout(local_size_x = 64) in;
-// slots of form factors (hemicube_sum.comp); begins with an indirect dispatch
-#if LARGE
-layout(std430, binding = 3) readonly buffer LargeList { uint largeGroups, one0, one1, largeCount; uint large[]; };
-#else
-layout(std430, binding = 3) buffer LargeList { uint largeGroups, one0, one1, largeCount; uint large[]; };
-#endif
 uniform int hemicubes;      // in this batch
-uniform int hemicubesEach;  // processed by an invocation, which reads a triangle's corners once for all of them
 const int kMostPixels = 1024;
-const uint kMostGroups = 65535u;
 
 // The nearest surface has the largest key. It consists of the inverse distance, with a front face slightly nearer than
 // a back face in the same place (sheets of two fronts); the last bits hold the front flag and the patch, so that ties
 // are resolved identically in every run.
 // The factor of a patch's inverse distance: a lamp is nearer than what it coincides with, on either side, as for rays.
-float nearnessOf(int patchIndex) { return texelFetch(corners, 3 * patchIndex).w > 0.0 ? 1.000012 : 1.0; }
+const float kLampNearness = 1.000012;
+float nearnessOf(int patchIndex) { return texelFetch(corners, 3 * patchIndex).w > 0.0 ? kLampNearness : 1.0; }
 
 uint keyOf(float inverseDistance, bool front, uint patchIndex) {
   return (floatBitsToUint(front ? inverseDistance * 1.000004 : inverseDistance) & ~15u) | (front ? 8u : 0u) |
@@ -131,14 +124,6 @@ bool isLarge(FaceTriangle t) {
   ivec2 size = t.high - t.low + 1;
   return min(size.x, size.y) > 0 && size.x * size.y > kMostPixels;
 }
-
-#if !LARGE
-void listLarge(int place) {
-  uint slot = atomicAdd(largeCount, 1u);
-  if (slot < uint(large.length())) large[slot] = uint(place);
-  atomicMax(largeGroups, min(slot + 1u, kMostGroups));
-}
-#endif
 
 // Of the 3 N rows of a hemicube: the face and the row in it.
 ivec2 faceAndRow(int row) {

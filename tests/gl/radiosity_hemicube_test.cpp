@@ -367,6 +367,27 @@ TEST_F(Hemicube, BacksBlockAndSendNothing) {
   EXPECT_EQ(s.backs[0], 0.0);
 }
 
+TEST_F(Hemicube, PatchesOfAPixelAreHiddenByNearerOnesInAnyOrder) {
+  // Triangles of less than a pixel: two plates of them, the farther one inside the shadow of the nearer one.
+  constexpr int kSquares = 40;
+  const auto addPlate = [](SceneBuilder& builder, double distance, double side) {
+    for (int i = 0; i < kSquares; ++i)
+      for (int j = 0; j < kSquares; ++j)
+        builder.plate({side * ((i + 0.5) / kSquares - 0.5), distance, side * ((j + 0.5) / kSquares - 0.5)},
+                      {side / kSquares, 0, 0}, {0, 0, side / kSquares}, 0);
+  };
+  constexpr std::size_t kPatches = 2 * kSquares * kSquares;
+  for (const bool nearFirst : {true, false}) {
+    SceneBuilder builder = probeScene();
+    addPlate(builder, nearFirst ? 1.0 : 2.0, nearFirst ? 1.0 : 1.8);
+    addPlate(builder, nearFirst ? 2.0 : 1.0, nearFirst ? 1.8 : 1.0);
+    const Computed c = compute(builder.scene(), pixelsAlone(64));
+    const double first = c.sum(0, 1, kPatches), second = c.sum(0, kPatches + 1, 2 * kPatches);
+    EXPECT_NEAR(nearFirst ? first : second, 0.239456470460774, 0.004) << nearFirst;
+    EXPECT_EQ(nearFirst ? second : first, 0.0) << nearFirst;
+  }
+}
+
 TEST_F(Hemicube, WhatTouchesThePatchBlocks) {
   // A wall a millionth of the room away from the patch's centre: no near plane lets light past.
   SceneBuilder builder;

@@ -179,7 +179,7 @@ TEST_F(HemicubeVisibilityTest, TheCheapestIsChosenAndTheOthersAreGone) {
   const Hemicubes small(fresh, capabilities(), mesh, settings);
   EXPECT_EQ(small.visibility(), HemicubeVisibility::raster);
   EXPECT_EQ(small.costs().size(), 1u);
-  EXPECT_EQ(fresh.statistics().built, 5);
+  EXPECT_EQ(fresh.statistics().built, 7);
 }
 
 TEST_F(HemicubeVisibilityTest, AnItemBufferThatLosesTrianglesIsNotChosen) {
