@@ -105,7 +105,7 @@ int runRender(RenderOptions options) {
     return renderPath(options.common, options.picture, options.path, options.scene, options.output);
   if (options.output.empty()) throwBadInput("--output is missing: the file for the picture");
   RenderSettings settings = options.picture.parse();
-  settings.fullFloatTarget = true;
+  settings.fullFloatTarget = settings.wholePictures = true;
   chooseDirectLight(settings);
   if (!isWritableImageName(options.output))
     throwBadInput("-o {}: the extension must be png, hdr, exr or pfm", options.output);

@@ -50,6 +50,7 @@ RenderSettings settingsOf(const ErrorBench& bench, const PictureOptions& picture
   RenderSettings settings = own.parse();
   settings.component = component;
   settings.size = bench.size;
+  settings.wholePictures = true;
   settings.filter = bench.filter;
   settings.fullFloatTarget = true;
   settings.textures.anisotropy = 1.0f;  // anisotropic filtering differs between drivers

@@ -50,6 +50,7 @@ struct RenderSettings {
   int motionSamples = 0;  ///< of them in each frame while the view moves; 0: by their time (MotionSamples)
   bool reprojection = true;  ///< while the view moves, frames before it smooth edges too
   bool reuse = true;  ///< stages with unchanged inputs are not run again; the same picture, bit by bit
+  bool wholePictures = false;  ///< all are drawn to the end (Renderer::renderToTheEnd), none in motion
   bool fullFloatTarget = false;  ///< HDR target in 32 instead of 16 bits, for measured pictures
   std::optional<float> exposure;  ///< multiplies radiance before tone mapping; not set: the scene's
   GpuSceneSettings textures;

@@ -21,6 +21,7 @@ constexpr std::uint32_t kSegmentsOfAll = 64;  // of a path that meets no records
 constexpr std::uint32_t kSoftwareIterations = 2000,
                         kMostIterations = 1u << 16;  // like the path tracer's, less one segment
 constexpr std::uint32_t kBounces = 12;  // frames in which light still changes once the scene has come to rest
+constexpr float kBandOfPicture = 0.2f;  // of Settings::blendBand: in a finished picture nothing moves
 constexpr std::size_t kMostPaths = std::size_t{1} << 20;  // per submission
 constexpr std::size_t kKeyPixels = std::size_t{1} << 23;  // number that a key distinguishes
 
@@ -57,13 +58,14 @@ bool IrradianceCache::isNeeded(const SceneFeatures& features, const IrradianceCa
 
 IrradianceCache::IrradianceCache(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, const Scene& scene,
                                  const PathScene& traced, const glm::dvec3& origin,
-                                 const IrradianceCacheSettings& settings, Light light)
+                                 const IrradianceCacheSettings& settings, Light light, bool wholePictures)
     : settings_(settings),
       programs_(&programs),
       scene_(traced),
       rayOrigin_(scene_.origin() - origin),
       referenceIrradiance_(typicalOf(scene)),
       typicalIrradiance_(referenceIrradiance_),
+      blendBand_((wholePictures ? kBandOfPicture : 1.0f) * settings.blendBand),
       clearTexture_(capabilities.clearTexture),
       cached_(settings.bounces == IrradianceCacheSettings::kAllBounces && light != Light::direct) {
   CHECK(settings.rays >= 1 && settings.rays <= CACHE_LANES && CACHE_LANES % settings.rays == 0, "rays = {}",
@@ -110,6 +112,17 @@ IrradianceCache::IrradianceCache(gl::ProgramLibrary& programs, const gl::Capabil
   prefetchPoints_ = gl::Buffer("cache prefetch points",
                                static_cast<std::size_t>(std::max(settings.prefetch, 1)) * sizeof(shared::PrefetchPoint),
                                nullptr, gl::Usage::dynamicCopy);
+  smooths_ = wholePictures && settings.transport == CacheTransport::rays && settings.smooths;
+  if (wholePictures && settings.transport == CacheTransport::rays && settings.split > 1) {
+    constexpr std::size_t kMostParts = std::size_t{1} << 19;
+    const auto side = static_cast<std::size_t>(settings.split), ofTile = side * side * side;
+    split_ = std::make_unique<Split>();
+    split_->mostTiles = std::max(std::min(slots_, kMostParts) / ofTile, std::size_t{1});
+    split_->tiles = words("cache tiles", slots_);
+    split_->slots = words("cache parts", split_->mostTiles * ofTile);
+    split_->light = gl::BufferTexture("cache light of parts", gl::Format::rgba32f,
+                                      split_->mostTiles * ofTile * sizeof(glm::vec4), nullptr, gl::Usage::dynamicCopy);
+  }
   ring_ = std::make_unique<gl::ReadBackRing>("cache record counts", kWorkWords * sizeof(GLuint));
 
   // Select the light that paths carry, and the programs of every transport.
@@ -124,24 +137,42 @@ IrradianceCache::IrradianceCache(gl::ProgramLibrary& programs, const gl::Capabil
 
   const gl::ShaderFlags common = lookupFlags(settings);
   const gl::ShaderFlags& rays = rays_ = rayFlags(lanes);
-  mark_ = &programs.loadCompute("cache mark records", "irradiance_cache/mark.comp", gl::with(common, {{"CLAIM", 0}}));
-  claim_ = &programs.loadCompute("cache claim records", "irradiance_cache/mark.comp", gl::with(common, {{"CLAIM", 1}}));
+  mark_ = &programs.loadCompute("cache mark records", "irradiance_cache/mark.comp",
+                                gl::with(common, {{"CLAIM", 0}, {"PARTS", 0}}));
+  claim_ = &programs.loadCompute("cache claim records", "irradiance_cache/mark.comp",
+                                 gl::with(common, {{"CLAIM", 1}, {"PARTS", 0}}));
   keep_ = &programs.loadCompute("cache keep records", "irradiance_cache/keep.comp",
                                 gl::with(common, {{"FOLLOWS", 0}, {"KEEPS", 0}}));
-  list_ = &programs.loadCompute("cache list records", "irradiance_cache/list.comp", rays);
+  const int split = split_ ? settings.split : 0;
+  list_ = &programs.loadCompute("cache list records", "irradiance_cache/list.comp",
+                                gl::with(rays, {{"SPLIT", split}, {"FEWER_PATHS", smooths_}}));
+  if (split_) {
+    split_->store =
+        &programs.loadCompute("cache store parts", "irradiance_cache/parts.comp", gl::with(common, {{"SPLIT", split}}));
+    for (const int claims : {0, 1})
+      split_->find[static_cast<std::size_t>(claims)] =
+          &programs.loadCompute(claims ? "cache claim parts" : "cache mark parts", "irradiance_cache/mark.comp",
+                                gl::with(common, {{"CLAIM", claims}, {"PARTS", 1}, {"SPLIT", split}}));
+  }
   if (settings.transport == CacheTransport::rays)
     paths_ = &programs.loadCompute("cache paths", "irradiance_cache/paths.comp",
                                    gl::with(rays, {{"CACHED", cached_}, {"FROM_CELLS", 0}, {"KEEPS", 0}}));
   if (settings.prefetch > 0)
     prefetch_ = &programs.loadCompute("cache prefetch points", "irradiance_cache/prefetch.comp", rays);
-  store_ = &programs.loadCompute("cache store records", "irradiance_cache/store.comp", common);
+  store_ = &programs.loadCompute("cache store records", "irradiance_cache/store.comp",
+                                 gl::with(common, {{"SMOOTHS", smooths_}}));
   if (settings.transport == CacheTransport::gather)
     gather_ = std::make_unique<LightGather>(programs, capabilities, scene, origin, settings, light, scene_, common);
   forget();
 }
 
 gl::ShaderFlags IrradianceCache::lookupFlags(const IrradianceCacheSettings& settings) {
-  return {{"GRID_FULL_FLOAT", settings.fullFloat}};
+  return {{"GRID_FULL_FLOAT", settings.fullFloat}, {"SHOWS_PARTS", 0}};
+}
+
+gl::ShaderFlags IrradianceCache::pictureFlags() const {
+  if (!split_) return lookupFlags(settings_);
+  return {{"GRID_FULL_FLOAT", settings_.fullFloat}, {"SHOWS_PARTS", 1}, {"SPLIT", settings_.split}};
 }
 
 gl::ShaderFlags IrradianceCache::rayFlags(int lanes, bool glossy) const {
@@ -152,6 +183,7 @@ gl::ShaderFlags IrradianceCache::rayFlags(int lanes, bool glossy) const {
 
 void IrradianceCache::forget() {
   slotTable_.clear();
+  if (split_) split_->clear();
   seen_.clear();
   for (gl::Buffer& buffer : work_) buffer.upload(0, kWorkWords * sizeof(GLuint), noWork().data());
   const std::array<const gl::Texture*, 1> textures{&irradiance_};
@@ -185,7 +217,7 @@ bool IrradianceCache::follow(const Scene& scene, const std::vector<Bounds>& move
 
 void IrradianceCache::place(const Inputs& inputs) {
   const shared::CascadeConstants grids =
-      cascadeConstants(settings_.cascades, inputs.cascades, settings_.blendBand, referenceIrradiance_);
+      cascadeConstants(settings_.cascades, inputs.cascades, blendBand_, referenceIrradiance_);
   std::swap(cascadeConstants_, cascadeConstantsBefore_);
   cascadeConstants_.upload(0, sizeof grids, &grids);
   if (cascades_.empty()) cascadeConstantsBefore_.upload(0, sizeof grids, &grids);
@@ -234,6 +266,7 @@ void IrradianceCache::keep(const gl::Program& program) {
   std::swap(work_[0], work_[1]);
   work_[0].upload(0, kWorkWords * sizeof(GLuint), noWork().data());
   slotTable_.clear();
+  if (split_) split_->clear();
   const gl::ComputePass pass("cache keep records", gl::Barrier::storage | gl::Barrier::textureFetch);
   program.use();
   bindRecords();
@@ -267,6 +300,12 @@ void IrradianceCache::findPrefetchPoints() {
 
 void IrradianceCache::mark(const Inputs& inputs) {
   if (inputs.fades) findPrefetchPoints();
+  claim(inputs, {mark_, claim_}, slotTable_);
+}
+
+// Marks slots, then makes records of the pixels that have found an empty one.
+void IrradianceCache::claim(const Inputs& inputs, const std::array<const gl::Program*, 2>& programs,
+                            gl::BufferTexture& slots) {
   keys_.buffer().clear(0xffffffffu);
   const glm::ivec2 picture = inputs.visible.size();
   const int rowsOfPrefetch = inputs.fades ? (settings_.prefetch + picture.x - 1) / picture.x : 0;
@@ -276,30 +315,36 @@ void IrradianceCache::mark(const Inputs& inputs) {
     claiming_ = gl::Buffer("cache pixels that claim", bytes, nullptr, gl::Usage::dynamicCopy);
   const std::array<GLuint, kWorkWords> none = noWork();
   work_[0].upload(kClaimGroups * sizeof(GLuint), (kWorkWords - kClaimGroups) * sizeof(GLuint), &none[kClaimGroups]);
+  const auto bind = [&](const gl::Program& program) {
+    program.use();
+    bindRecords();
+    inputs.visible.bind(program, inputs.worldFromClip);
+    slots.bind(UNIT_CACHE_SLOTS);
+    if (split_) split_->tiles.bind(UNIT_CACHE_TILES);
+    prefetchPoints_.bindStorage(CACHE_PREFETCH_BUFFER);
+    claiming_.bindStorage(CACHE_CLAIMING_BUFFER);
+  };
   {
     const gl::ComputePass pass("cache mark records",
                                gl::Barrier::storage | gl::Barrier::textureFetch | gl::Barrier::command);
-    mark_->use();
-    bindRecords();
-    inputs.visible.bind(*mark_, inputs.worldFromClip);
-    slotTable_.bind(UNIT_CACHE_SLOTS);
+    bind(*programs[0]);
     seen_.buffer().bindStorage(CACHE_SEEN_BUFFER);
     keys_.buffer().bindStorage(CACHE_KEYS_BUFFER);
-    prefetchPoints_.bindStorage(CACHE_PREFETCH_BUFFER);
-    claiming_.bindStorage(CACHE_CLAIMING_BUFFER);
     pass.dispatch(size, group);
   }
   const gl::ComputePass pass("cache claim records",
                              gl::Barrier::storage | gl::Barrier::textureFetch | gl::Barrier::command);
-  claim_->use();
-  bindRecords();
-  inputs.visible.bind(*claim_, inputs.worldFromClip);
-  slotTable_.bind(UNIT_CACHE_SLOTS);
+  bind(*programs[1]);
   keys_.bind(UNIT_CACHE_KEYS);
-  slotTable_.buffer().bindStorage(CACHE_SLOTS_BUFFER);
-  prefetchPoints_.bindStorage(CACHE_PREFETCH_BUFFER);
-  claiming_.bindStorage(CACHE_CLAIMING_BUFFER);
+  slots.buffer().bindStorage(CACHE_SLOTS_BUFFER);
   pass.dispatchIndirect(work_[0], kClaimGroups * sizeof(GLuint));
+}
+
+// Places the records found, splits the cells where they are close to other surfaces, and finds records for the parts.
+void IrradianceCache::split(const Inputs& inputs) {
+  if (!split_) return;
+  list(0);
+  claim(inputs, split_->find, split_->slots);
 }
 
 // Lists visible records with fewer paths than `target`.
@@ -312,11 +357,17 @@ void IrradianceCache::list(int target, bool countsFading) {
   irradiance_.bind(UNIT_CACHE);
   scene_.bind();
   lit_.bindStorage(CACHE_LIST_BUFFER);
-  const gl::ComputePass pass("cache list records", gl::Barrier::storage | gl::Barrier::command);
+  const gl::ComputePass pass("cache list records",
+                             gl::Barrier::storage | gl::Barrier::command | gl::Barrier::textureFetch);
   list_->use();
   list_->set("mostLit", static_cast<unsigned>(lit_.bytes() / sizeof(GLuint)));
   list_->set("pathTarget", static_cast<unsigned>(target));
   list_->set("countsFading", countsFading ? 1 : 0);
+  if (split_) {
+    list_->set("shareOfParts", settings_.splitShare);
+    list_->set("mostTiles", static_cast<unsigned>(split_->mostTiles));
+    split_->tiles.buffer().bindStorage(CACHE_TILES_BUFFER);
+  }
   slotTable_.bind(UNIT_CACHE_SLOTS);
   seen_.bind(UNIT_CACHE_SEEN);
   pass.dispatchIndirect(work_[0]);
@@ -429,10 +480,26 @@ void IrradianceCache::store(float mostChange) {
   store_->use();
   store_->set("enoughPaths", static_cast<unsigned>(std::min(settings_.samples, settings_.leastRays)));
   store_->set("mostChange", mostChange);
+  if (smooths_) store_->set("pathsOfRound", static_cast<float>(settings_.rays));
   bindRecords();
   slotTable_.bind(UNIT_CACHE_SLOTS);
   irradiance_.bindImage(0, gl::Access::write);
   pass.dispatchIndirect(work_[0]);
+}
+
+// Parts are for the picture alone: no path ends at them.
+void IrradianceCache::storeParts() {
+  if (!split_) return;
+  const gl::ComputePass parts("cache store parts", gl::Barrier::storage | gl::Barrier::textureFetch);
+  split_->store->use();
+  split_->store->set("pathsOfRound", static_cast<float>(settings_.rays));
+  bindRecords();
+  irradiance_.bind(UNIT_CACHE);
+  slotTable_.bind(UNIT_CACHE_SLOTS);
+  split_->slots.bind(UNIT_CACHE_PART_SLOTS);
+  split_->tiles.bind(UNIT_CACHE_TILES);
+  split_->light.buffer().bindStorage(CACHE_PARTS_BUFFER);
+  parts.dispatchIndirect(work_[0]);
 }
 
 // Stored values are of the order of the scene's light, also when that has become another.
@@ -484,6 +551,7 @@ IrradianceCache::Found IrradianceCache::findRecords(const Inputs& inputs) {
   else if (moved) keep(*keep_);
   followed_ = false;
   mark(inputs);
+  split(inputs);
   return {relights, mostChange};
 }
 
@@ -513,6 +581,7 @@ void IrradianceCache::update(const Inputs& inputs, int rounds) {
        paths += settings_.rays)
     light(settings_.leastRays);
   store(mostChange);
+  storeParts();
   list(settings_.samples, true);  // the remaining work
   ring_->copy(work_[0]);
 }
@@ -521,6 +590,10 @@ void IrradianceCache::bindForLookup() const {
   cascadeConstants_.bindUniform(BLOCK_CASCADES);
   constants_.bindUniform(BLOCK_CACHE);
   irradiance_.bind(UNIT_CACHE);
+  if (split_) {
+    split_->tiles.bind(UNIT_CACHE_TILES);
+    split_->light.bind(UNIT_CACHE_PARTS);
+  }
 }
 
 void IrradianceCache::bindForRays() const {
@@ -552,7 +625,9 @@ std::vector<IrradianceCache::Shown> IrradianceCache::shown() const {
   std::vector<Shown> result;
   if (count == 0) return result;
   for (const shared::CacheRecord& r : records_[0].read<shared::CacheRecord>(count)) {
-    if (r.triangle == CACHE_UNPLACED || r.triangle == CACHE_NOWHERE || r.paths == 0) continue;
+    if (r.triangle == CACHE_UNPLACED || r.triangle == CACHE_NOWHERE || r.paths == 0 ||
+        r.cell.w >= settings_.cascades.cascades * CACHE_FACES)
+      continue;
     result.push_back({r.position, r.normal, r.shown, r.blendWeight, glm::ivec3(r.cell), r.cell.w / CACHE_FACES,
                       r.cell.w % CACHE_FACES});
   }
@@ -589,6 +664,7 @@ std::size_t IrradianceCache::gpuBytes() const {
                       claiming_.bytes() + irradiance_.bytes() + prefetchPoints_.bytes() + movedBoxes_.bytes() +
                       ring_->bytes() + (gather_ ? gather_->gpuBytes() : 0);
   for (std::size_t i = 0; i < 2; ++i) bytes += records_[i].bytes() + work_[i].bytes();
+  if (split_) bytes += split_->tiles.bytes() + split_->slots.bytes() + split_->light.bytes();
   if (kept_) bytes += kept_->hits[0].bytes() + kept_->hits[1].bytes() + kept_->traced.bytes() + kept_->light.bytes();
   return bytes;
 }

@@ -68,9 +68,10 @@ class IrradianceCache {
   };
 
   /// `scene`: as loaded; `traced`: the same for rays. `origin`: of the frame's positions, in the scene's coordinates.
+  /// wholePictures: as in RenderSettings.
   IrradianceCache(gl::ProgramLibrary& programs, const gl::Capabilities& capabilities, const Scene& scene,
                   const PathScene& traced, const glm::dvec3& origin, const IrradianceCacheSettings& settings,
-                  Light light);
+                  Light light, bool wholePictures = false);
 
   static bool isNeeded(const SceneFeatures& features, const IrradianceCacheSettings& settings, Light light);
 
@@ -92,6 +93,8 @@ class IrradianceCache {
   /// Binds blocks 1 and 6 and unit 5 for shaders/irradiance_cache/lookup.glsl.
   void bindForLookup() const;
   static gl::ShaderFlags lookupFlags(const IrradianceCacheSettings& settings);
+  /// The same for the picture itself, which also shows the parts of split cells.
+  gl::ShaderFlags pictureFlags() const;
   /// For programs that trace rays among the surfaces and look up records: their flags, and what they read.
   gl::ShaderFlags rayFlags(int lanes = 1, bool glossy = false) const;
   void bindForRays() const;
@@ -137,8 +140,8 @@ class IrradianceCache {
  private:
   static constexpr double kIterationsOfPath = 256.0;  ///< of a lane, approximately (gl/chunks.hpp)
   // Words of shaders/irradiance_cache/work.glsl.
-  static constexpr std::size_t kWanted = 3, kWaiting = 4, kFrame = 5, kLitGroups = 6, kTraced = 36, kClaimGroups = 37,
-                               kWorkWords = 41;
+  static constexpr std::size_t kWanted = 3, kWaiting = 4, kFrame = 5, kLitGroups = 6, kTraced = 36, kClaimGroups = 39,
+                               kWorkWords = 43;
   static std::array<GLuint, kWorkWords> noWork();  ///< groups of all dispatches: 0 by 1 by 1
 
   void beginToFollow(bool fades);
@@ -152,10 +155,13 @@ class IrradianceCache {
   void keep(const gl::Program& program);
   void findPrefetchPoints();
   void mark(const Inputs& inputs);
+  void claim(const Inputs& inputs, const std::array<const gl::Program*, 2>& programs, gl::BufferTexture& slots);
+  void split(const Inputs& inputs);
   void list(int target, bool countsFading = false);
   void light(int target);
   void gather(const Inputs& inputs);
   void store(float mostChange);
+  void storeParts();
   void makeKept();
   void relight();
   void bindRecords() const;
@@ -169,9 +175,11 @@ class IrradianceCache {
   glm::dvec3 rayOrigin_;  ///< in the frame's coordinates
   float referenceIrradiance_;  ///< of the order of the irradiance; only scales stored values
   float typicalIrradiance_;  ///< the scene's now
+  float blendBand_;
   bool clearTexture_, followed_ = false;  ///< the second: since the last update
   bool cached_;  ///< paths end at records
   bool settles_ = false;
+  bool smooths_ = false;  ///< noise of records, in finished pictures
   std::uint32_t followedIn_ = 0;  ///< the frame in which the scene last moved
   std::size_t slots_, capacity_;
   std::uint32_t frame_ = 0;
@@ -195,6 +203,16 @@ class IrradianceCache {
   std::array<gl::Buffer, 2> records_, work_;  ///< the second of each: before the cascades moved
   gl::Buffer claiming_;  ///< as many as the picture has pixels
   gl::BufferTexture slotTable_, keys_, seen_;
+  /// Parts of split cells (shaders/irradiance_cache/parts.glsl).
+  struct Split {
+    const gl::Program* store;
+    std::array<const gl::Program*, 2> find;  ///< marks and claims
+    gl::BufferTexture tiles, slots, light;  ///< of a slot; of a part, as in slotTable_ and irradiance_
+    std::size_t mostTiles;
+
+    void clear() { tiles.clear(), slots.clear(), light.clear(); }
+  };
+  std::unique_ptr<Split> split_;  ///< only if Settings::split
   gl::Texture irradiance_;  ///< cacheIrradiance in GLSL: as looked up
   std::unique_ptr<gl::ReadBackRing> ring_;
   Counts counts_;

@@ -67,7 +67,7 @@ IrradianceCacheFrame::IrradianceCacheFrame(const FrameParts& parts)
       maps_(lightMaps(parts)),
       visible_(parts.programs, parts.drawn(), parts.depth),
       cache_(parts.programs, parts.context.capabilities(), parts.scene, parts.traced.get(), parts.origin,
-             cacheSettings(parts), cachedLight(parts.settings.component)) {
+             cacheSettings(parts), cachedLight(parts.settings.component), parts.settings.wholePictures) {
   if (parts.scene.motion)
     for (const Mesh& mesh : parts.drawn().scene().meshes) meshes_.push_back(mesh.bounds);
   makeReflections();

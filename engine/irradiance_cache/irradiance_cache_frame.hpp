@@ -29,7 +29,7 @@ class IrradianceCacheFrame final : public FrameTechnique {
 
   std::string surfaceShader() const override { return "irradiance_cache/surface.frag"; }
   gl::ShaderFlags surfaceFlags() const override {
-    return gl::with(IrradianceCache::lookupFlags(cache_.settings()),
+    return gl::with(cache_.pictureFlags(),
                     {{"INDIRECT_SPECULAR", reflections_ && parts_.features.specular},
                      {"BEHIND_MEDIA", Reflections::showsClouds(parts_.features, settings().reflections)}});
   }

@@ -40,6 +40,11 @@ struct IrradianceCacheSettings {
   bool keepsHits = true;
   static constexpr int kAllPaths = 0;
   int tracedPaths = kAllPaths;  ///< of kept ones, traced again per frame at most
+  /// For CacheTransport::rays, in finished pictures: a cell where surfaces are close is split into this many parts a
+  /// side; 1: none.
+  int split = 1;
+  float splitShare = 0.25f;  ///< paths of all parts, over those of all cells
+  bool smooths = true;  ///< likewise: noise is told from structure; records that count little have fewer paths
   bool fullFloat = false;  ///< 32 bits instead of 16; also where lamps differ too much in strength for 16
 };
 

@@ -28,3 +28,7 @@ int slotOf(int cascade, int face, ivec3 cell) {
   place += cells * ivec3(lessThan(place, ivec3(0)));
   return ((((cascade * CACHE_FACES + face) * cells) + place.z) * cells + place.y) * cells + place.x;
 }
+
+// Whether a record belongs to a part of a split cell; cascade of either.
+bool isPart(ivec4 cell) { return cell.w >= grids.shape.y * CACHE_FACES; }
+int cascadeOf(ivec4 cell) { return cell.w / CACHE_FACES % grids.shape.y; }

@@ -31,7 +31,8 @@ void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= min(workBefore[3], cache.capacity)) return;
   CacheRecord r = before[i];
-  int cascade = r.cell.w / CACHE_FACES;
+  if (isPart(r.cell)) return;  // finished pictures find theirs anew
+  int cascade = cascadeOf(r.cell);
   ivec3 place = r.cell.xyz - cache.firstCell[cascade].xyz;
   bool isInside = all(greaterThanEqual(place, ivec3(0))) && all(lessThan(place, ivec3(grids.shape.x)));
   if (r.triangle == CACHE_NOWHERE || !isInside) return;

@@ -1,6 +1,7 @@
 // Visits every record once per frame. A new one is placed where its pixel's ray meets the scene, in the ray caster's
 // coordinates, so that no path starts inside a surface. Needed records that do not have all their paths yet are
-// listed. A new one first shows the irradiance looked up at its place in the previous frame.
+// listed. SPLIT: cells are split, into as many parts a side, where a record sees other surfaces close by. A new record
+// first shows the irradiance looked up at its place in the previous frame.
 layout(local_size_x = 64) in;
 #include "shared/bindings.h"
 #include "shared/path_tracer.h"
@@ -19,6 +20,11 @@ layout(binding = UNIT_CACHE_SEEN) uniform usamplerBuffer cacheSeen;
 #include "irradiance_cache/neighbours.glsl"
 uniform uint mostLit;     // records
 uniform uint pathTarget;  // paths that each record should have
+#if SPLIT
+uniform float shareOfParts;  // paths of all parts of cells, over those of all cells
+uniform uint mostTiles;
+layout(std430, binding = CACHE_TILES_BUFFER) restrict buffer CacheTiles { uint tiles[]; };
+#endif
 uniform bool countsFading;  // also list records whose shown value is still fading in
 
 // Whether one of the neighbours that are shown is much darker. Those of this frame are not shown yet.
@@ -40,7 +46,7 @@ bool isBrightBeside(ivec4 cell, vec3 light) {
 float shareBlockedNearby(Surface surface, uint triangle, ivec4 cell) {
   const float kOfCell = 1.0 / 8.0, kOfView = 1.0 / 64.0;
   const uint kRays = 32u;
-  float reach = min(kOfCell * grids.cascades[cell.w / CACHE_FACES].cellSize,
+  float reach = min(kOfCell * grids.cascades[cascadeOf(cell)].cellSize,
                     kOfView * distance(surface.position, tracer.cameraPosition));
   vec3 start = offsetRay(surface.position, surface.geometricNormal, surface.magnitude);
   uint blocked = 0u;
@@ -50,6 +56,24 @@ float shareBlockedNearby(Surface surface, uint triangle, ivec4 cell) {
   }
   return float(blocked) / float(kRays);
 }
+
+#if SPLIT
+// Where other surfaces are close, light changes within a cell [Ward1988]: whether some are nearer than kReach cells in
+// at least kShare of the cosine-weighted hemisphere. On a floor that is x kReach cells from a wall's foot, that share is
+// the part of the unit disc beyond x: 5 % for x = 0.8.
+bool isClose(Surface surface, uint triangle, ivec4 cell) {
+  const float kReach = 1.5, kShare = 0.05;
+  const uint kRays = 32u;
+  float reach = kReach * grids.cascades[cascadeOf(cell)].cellSize;
+  vec3 start = offsetRay(surface.position, surface.geometricNormal, surface.magnitude);
+  uint close = 0u;
+  for (uint i = 0u; i < kRays; ++i) {
+    vec2 xi = vec2((float(i) + 0.5) / float(kRays), fract(0.618034 * float(i)));
+    close += uint(anyHit(Ray(start, 0.0, cosineSample(surface.geometricNormal, xi), reach), triangle));
+  }
+  return float(close) >= kShare * float(kRays);
+}
+#endif
 
 void main() {
   uint index = gl_GlobalInvocationID.x;
@@ -62,7 +86,8 @@ void main() {
     // A record in a slit, such as a pixel may see between a lamp and the ceiling that it hangs under, has the light of
     // the slit alone: it would be wrong for the rest of its cell.
     const float kSlit = 0.75;
-    float blocked = isThere ? shareBlockedNearby(surface, hit.triangle, records[index].cell) : 1.0;
+    ivec4 cell = records[index].cell;
+    float blocked = isThere && !isPart(cell) ? shareBlockedNearby(surface, hit.triangle, cell) : 0.0;
     isThere = isThere && blocked < kSlit;
     triangle = isThere ? hit.triangle : CACHE_NOWHERE;
     records[index].triangle = triangle;
@@ -76,15 +101,40 @@ void main() {
       records[index].shown = before;
       records[index].blendWeight = 0.0;
       records[index].state = (surface.front ? CACHE_FRONT : 0u) | (known ? 0u : CACHE_FIRST) |
-                             (isBrightBeside(records[index].cell, before) ? CACHE_BRIGHT : 0u) |
+                             (!isPart(cell) && isBrightBeside(cell, before) ? CACHE_BRIGHT : 0u) |
                              (blocked > 0.0 ? CACHE_NARROW : 0u);
+#if SPLIT
+      if (!isPart(cell) && isClose(surface, hit.triangle, cell)) records[index].state |= CACHE_CLOSE;
+#endif
     }
   }
   if (triangle == CACHE_NOWHERE) return;
+  uint target = pathTarget;
+  ivec4 cell = records[index].cell;
+#if FEWER_PATHS
+  // It counts by lean^2 at most; but the light of a round sphere is that of all its axes.
+  const float kFewest = 64.0;
+  float lean = records[index].normal[cell.w % CACHE_FACES / 2];
+  target = min(target, uint(max(kFewest, float(target) * min(2.0 * lean * lean, 1.0))));
+#endif
+#if SPLIT
+  if (isPart(cell)) {
+    const float kLeast = 2.0 * float(PATHS);  // for an estimate of the noise
+    float each = shareOfParts * float(pathTarget) * float(work.wanted - work.parts) / float(work.parts);
+    target = min(target, uint(clamp(each, kLeast, 4e9)));
+  }
+  if ((records[index].state & CACHE_CLOSE) != 0u) {
+    int slot = slotOf(cascadeOf(cell), cell.w % CACHE_FACES, cell.xyz);
+    if (tiles[slot] == 0u) {
+      uint tile = atomicAdd(work.tiles, 1u);
+      if (tile < mostTiles) tiles[slot] = tile + 1u;
+    }
+  }
+#endif
   // also if it is not needed itself, but is looked up next to needed ones; not without any path, as it shows nothing
   uint paths = records[index].paths;
   bool fades = countsFading && paths > 0u && records[index].blendWeight < fullBlendWeight(paths);
-  bool lacksPaths = paths < pathTarget &&
+  bool lacksPaths = paths < target &&
                     (records[index].born == cache.frame || texelFetch(cacheSeen, int(index)).x == cache.frame);
   if (!fades && !lacksPaths) return;
   uint place = atomicAdd(work.waiting, 1u);

@@ -26,9 +26,33 @@ vec4 cachedInCascade(int k, vec3 position, vec3 normal) {
   return sum;
 }
 
+#if SHOWS_PARTS
+#include "lib/clamped_int.glsl"
+#include "irradiance_cache/parts.glsl"
+layout(binding = UNIT_CACHE_PARTS) uniform samplerBuffer cacheParts;  // of a part: as in a cell
+
+// The same from the parts of split cells.
+vec4 cachedInParts(int k, vec3 position, vec3 normal) {
+  vec3 place = float(SPLIT) * cachePlace(k, position) - 0.5, near = fract(place);
+  ivec3 first = SPLIT * cache.firstCell[k].xyz +
+                clampedInt(floor(place), ivec3(-1), ivec3(SPLIT * grids.shape.x));
+  vec4 sum = vec4(0.0);
+  for (int i = 0; i < 24; ++i) {
+    int axis = i >> 3;
+    ivec3 corner = ivec3(i, i >> 1, i >> 2) & 1;
+    vec3 weights = mix(1.0 - near, near, vec3(corner));
+    float weight = normal[axis] * normal[axis] * weights.x * weights.y * weights.z;
+    if (!(weight > 0.0)) continue;
+    int part = partOf(k, faceOf(axis, normal[axis]), first + corner);
+    if (part >= 0) sum += weight * texelFetch(cacheParts, part);
+  }
+  return sum;
+}
+#endif
+
 // Enough of a cascade: the least that a point's own record contributes, 1/8 of its blend weight of at least 1/4. A
 // weight below kLeast is only the filter's rounding: its colour would be noise.
-const float kEnough = 1.0 / 32.0, kLeast = 1e-5;
+const float kEnough = 1.0 / 32.0, kLeast = 1e-5, kEnoughParts = 1.0 / 8.0;
 
 // From the finest cascade to the coarsest, each blended into the next near its reach and where it has few records.
 // found: false if no cascade has any record.
@@ -41,6 +65,13 @@ vec3 cachedIrradiance(vec3 position, vec3 normal, out bool found) {
     vec4 here = cachedInCascade(k, position, normal);
     if (!(here.w > kLeast)) continue;
     weight *= min(here.w / kEnough, 1.0);
+#if SHOWS_PARTS
+    vec4 parts = cachedInParts(k, position, normal);
+    float share = min(parts.w / kEnoughParts, 1.0);
+    here.rgb /= here.w;
+    here.w = 1.0;
+    if (share > 0.0) here.rgb = mix(here.rgb, parts.rgb / parts.w, share);
+#endif
     irradiance += weight * here.rgb / here.w;
     cells += weight * grids.cascades[k].cellSize;
     sum += weight;  // not 1 - left, which would cancel for a small weight

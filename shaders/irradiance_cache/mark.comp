@@ -3,6 +3,7 @@
 // they come after the picture's pixels. Slots with a record keep it. An empty slot goes to the pixel nearest to its
 // cell's centre and most aligned with its axis: an actual point, because the mean of several would lie buried in edges
 // and corners.
+// PARTS: the same for the parts of cells that list.comp has split.
 // First pass: the best key of each empty slot, and a list of the pixels that found one. Second pass, CLAIM, over that
 // list: the winner creates the record.
 #if CLAIM
@@ -16,6 +17,9 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(std430, binding = CACHE_WORK_BUFFER) restrict buffer CacheWorkBlock { CacheWork work; };
 #include "irradiance_cache/cascade_weight.glsl"
 #include "forward/visible.glsl"
+#if PARTS
+#include "irradiance_cache/parts.glsl"
+#endif
 layout(binding = UNIT_CACHE_SLOTS) uniform usamplerBuffer cacheSlots;  // 0: empty, else the record's index + 1
 #if CLAIM
 layout(binding = UNIT_CACHE_KEYS) uniform usamplerBuffer cacheKeys;
@@ -32,6 +36,11 @@ layout(std430, binding = CACHE_PREFETCH_BUFFER) readonly restrict buffer CachePr
 
 const float kLeans = 0.02;  // squared component of the normal from which the slot is filled
 const int kPrefetchCascades = 2;
+#if PARTS
+const int kParts = SPLIT;
+#else
+const int kParts = 1;
+#endif
 
 void main() {
   ivec2 size = textureSize(visibleDepth, 0);
@@ -66,15 +75,21 @@ void main() {
     if (!(weight > 0.0)) continue;
     if (!isPrefetch) left -= weight;
     vec3 inCells = placeInCells(k, position, normal);
-    ivec3 cell = clampedInt(floor(inCells), ivec3(-1), ivec3(grids.shape.x));
-    if (any(lessThan(cell, ivec3(0))) || any(greaterThanEqual(cell, ivec3(grids.shape.x)))) continue;
+    inCells *= float(kParts);
+    ivec3 cell = clampedInt(floor(inCells), ivec3(-1), ivec3(kParts * grids.shape.x));
+    if (any(lessThan(cell, ivec3(0))) || any(greaterThanEqual(cell, ivec3(kParts * grids.shape.x)))) continue;
     float offCentre = length(inCells - vec3(cell) - 0.5);
-    cell += cache.firstCell[k].xyz;
+    cell += kParts * cache.firstCell[k].xyz;
     for (int axis = 0; axis < 3; ++axis) {
       float lean = normal[axis] * normal[axis];
       if (lean < kLeans) continue;
       int face = faceOf(axis, normal[axis]);
-      int slot = slotOf(k, face, cell);
+#if PARTS
+      int slot = partOf(k, face, cell), level = k + grids.shape.y;
+      if (slot < 0) continue;
+#else
+      int slot = slotOf(k, face, cell), level = k;
+#endif
       uint holds = texelFetch(cacheSlots, slot).x;
       uint score = uint(clampedInt((offCentre + 0.5 * (1.0 - lean)) * (511.0 / 1.5), 0, 511));
       uint key = score << 23u | name;
@@ -83,9 +98,12 @@ void main() {
       uint index = atomicAdd(work.wanted, 1u);
       if (index >= cache.capacity) continue;
       atomicMax(work.allGroupsX, index / uint(CACHE_LANES) + 1u);
-      records[index] = CacheRecord(ivec4(cell, k * CACHE_FACES + face), CACHE_UNPLACED, 0u, 0.0, 0.0, vec3(0.0), 0u,
-                                     position, cache.frame, normal, uint(number), vec3(0.0), 0.0);
+      records[index] = CacheRecord(ivec4(cell, level * CACHE_FACES + face), CACHE_UNPLACED, 0u, 0.0, 0.0, vec3(0.0), 0u,
+                                     position, cache.frame, normal, uint(number), vec3(0.0), 0.0, 0.0, 0.0, 0.0, 0.0);
       slots[slot] = index + 1u;
+#if PARTS
+      atomicAdd(work.parts, 1u);
+#endif
 #else
       claims = claims || holds == 0u;
       if (holds == 0u)

@@ -219,7 +219,7 @@ void claimFor(Surface surface, uint triangle) {
   atomicMax(work.allGroupsX, index / uint(CACHE_LANES) + 1u);
   records[index] = CacheRecord(ivec4(cell, k * CACHE_FACES + face), triangle,
                                CACHE_FIRST | (surface.front ? CACHE_FRONT : 0u), keptBarycentrics.x, keptBarycentrics.y,
-                               vec3(0.0), 0u, position, cache.frame, surface.normal, 0u, vec3(0.0), 0.0);
+                               vec3(0.0), 0u, position, cache.frame, surface.normal, 0u, vec3(0.0), 0.0, 0.0, 0.0, 0.0, 0.0);
 }
 #endif
 
@@ -401,7 +401,12 @@ void main() {
   vec3 sum = vec3(0.0);
   for (uint i = 0u; i < uint(PATHS); ++i) sum += found[lane + i];
   uint paths = record.paths + uint(PATHS);
-  records[index].irradiance = record.irradiance + (kPi * sum - float(PATHS) * record.irradiance) / float(paths);
+  // Updated as by [Welford1962].
+  vec3 change = kPi * sum / float(PATHS) - record.irradiance;
+  float squares = record.paths == 0u ? 0.0 : record.squares;
+  vec3 inUnits = change / cacheUnit();
+  records[index].squares = squares + dot(inUnits, inUnits) * float(record.paths) / float(paths);
+  records[index].irradiance = record.irradiance + change * (float(PATHS) / float(paths));
   records[index].paths = paths;
 }
 #endif

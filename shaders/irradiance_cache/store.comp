@@ -10,6 +10,10 @@ layout(std430, binding = CACHE_WORK_BUFFER) readonly restrict buffer CacheWorkBl
 layout(std430, binding = CACHE_RECORDS_BUFFER) restrict buffer CacheRecords { CacheRecord records[]; };
 layout(GRID_FORMAT, binding = 0) writeonly uniform image3D cacheIrradiance;
 #include "irradiance_cache/neighbours.glsl"
+#if SMOOTHS
+#include "irradiance_cache/smoothing.glsl"
+const float kLeastRounds = 4.0;  // for an estimate of the noise
+#endif
 uniform uint enoughPaths;  // a CACHE_FIRST record follows its estimate without limit until it has this many
 // largest change per frame of the shown irradiance, relative to what it is or a quarter of its target; 0: no limit
 uniform float mostChange;
@@ -57,6 +61,28 @@ vec3 withNeighbours(CacheRecord record) {
   return sum / weights;
 }
 
+#if SMOOTHS
+// The same of records with several rounds of paths: only noise is taken away.
+vec3 smoothed(CacheRecord record) {
+  if (float(record.paths) < kLeastRounds * pathsOfRound) return withNeighbours(record);
+  int axis = record.cell.w % CACHE_FACES / 2;
+  float size = grids.cascades[cascadeOf(record.cell)].cellSize, error2 = squaredError(record.squares, record.paths);
+  PlaneFit fit = beginFit();
+  for (int i = 0; i < kNeighbours; ++i) {
+    uint index;
+    if (!neighbourAt(record.cell, i, index)) continue;
+    CacheRecord other = records[index];
+    float weight = smoothstep(0.5, 1.0, dot(other.normal, record.normal));
+    bool isNarrow = (other.state & ~record.state & CACHE_NARROW) != 0u;
+    if (other.paths == 0u || !(weight > 0.0) || isNarrow) continue;
+    addToFit(fit, (other.position - record.position) / size, axis,
+             (other.irradiance - record.irradiance) / cacheUnit(),
+             error2 + squaredError(other.squares, other.paths), weight);
+  }
+  return max(record.irradiance + cacheUnit() * fittedDifference(fit), 0.0);
+}
+#endif
+
 // The brightest irradiance of records around a cell that are not in a narrow place; -1: there are none.
 float brightestAround(ivec4 cell) {
   float brightest = -1.0;
@@ -83,10 +109,15 @@ void main() {
   if (index >= recordCount(work.wanted)) return;
   CacheRecord record = records[index];
   if (record.paths == 0u) return;
-  int cascade = record.cell.w / CACHE_FACES;
+  if (isPart(record.cell)) return;  // parts.comp
+  int cascade = cascadeOf(record.cell);
   ivec3 place = record.cell.xyz - cache.firstCell[cascade].xyz;
   if (any(lessThan(place, ivec3(0))) || any(greaterThanEqual(place, ivec3(grids.shape.x)))) return;
+#if SMOOTHS
+  vec3 target = smoothed(record);
+#else
   vec3 target = withNeighbours(record);
+#endif
   show(index, record, shareOfItsCell(record, target) * target);
   imageStore(cacheIrradiance, ivec3(place.xy, record.cell.w * grids.shape.x + place.z),
              record.blendWeight * vec4(record.shown / cacheUnit(), 1.0));

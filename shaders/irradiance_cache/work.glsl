@@ -7,6 +7,8 @@ struct CacheWork {
   uint frame;
   uint litGroups[3 * CACHE_PARTS];
   uint traced;  // paths to be traced again in the last frame in which the scene moved
+  uint tiles;   // of parts of split cells
+  uint parts;   // records that belong to one
   uint claimGroups[3];
   uint claiming;  // pixels that have found an empty slot
 };

@@ -25,6 +25,8 @@ SHARED_BEGIN
 #define CACHE_HITS_BUFFER 6
 #define CACHE_HITS_BEFORE_BUFFER 7
 #define CACHE_SLOTS_OF_PATHS_BUFFER 7
+#define CACHE_TILES_BUFFER 6
+#define CACHE_PARTS_BUFFER 6
 
 // Texture units; where rays are traced, 0 has the materials
 #define UNIT_CACHE_KEYS 1
@@ -37,6 +39,9 @@ SHARED_BEGIN
 #define UNIT_CACHE_BOUNCE_PLACES 13
 #define UNIT_CACHE_LIGHT 8
 #define UNIT_CACHE_MOVED 9
+#define UNIT_CACHE_TILES 9
+#define UNIT_CACHE_PARTS 6
+#define UNIT_CACHE_PART_SLOTS 10
 
 #define CACHE_FACES 6           // per cell: 2 * axis + (1 if the normal points down the axis)
 #define CACHE_UNPLACED 0xffffffffu  // a record's triangle before its pixel's ray was traced
@@ -56,6 +61,7 @@ SHARED_BEGIN
 #define CACHE_BRIGHT 8u
 #define CACHE_KEPT 16u   // what its paths hit is kept: CacheHit
 #define CACHE_NARROW 32u  // another surface is much nearer than its cell is wide
+#define CACHE_CLOSE 64u   // others are nearer than its cell is wide: the cell is split in finished pictures
 
 // What a path has hit
 #define CACHE_HITS 64        // paths of a record whose hits are kept
@@ -68,7 +74,8 @@ SHARED_BEGIN
 #define CACHE_HOLE 0xffffffffu   // in the list of paths to be traced
 
 struct CacheRecord {
-  ivec4 cell;           // cell of its cascade, counted from the origin; w: cascade * CACHE_FACES + face
+  ivec4 cell;           // cell of its cascade, counted from the origin; w: cascade * CACHE_FACES + face. Part of a
+                        // split cell: counted in parts; w: (cascade + cascades) * CACHE_FACES + face
   uint triangle;        // index in the scene
   uint state;           // CACHE_FRONT: seen from its front; CACHE_FIRST: nothing was shown in its place before;
                         // CACHE_BRIGHT: what was is much brighter than what a record beside it shows
@@ -82,6 +89,8 @@ struct CacheRecord {
   uint pixel;           // the pixel that created it
   vec3 shown;           // irradiance used by lookups: follows `irradiance` and that of its neighbours at a bounded rate
   float blendWeight;       // its weight in lookups: has faded in, and shows its target, where it is fullBlendWeight()
+  float squares;        // sum of squared differences between its rounds of paths and their mean, in cacheUnit()
+  float padding0, padding1, padding2;
 };
 
 // A path of a record in a scene that moves, as far as it is kept. Colours: packColour.

@@ -220,4 +220,45 @@ TEST_F(FeaturesOff, EachTransportLeavesTheOthersStagesOut) {
   EXPECT_FALSE(draw(rays, Component::all, scene).cache);
 }
 
+// Split cells and smoothed noise are of finished pictures along rays; elsewhere nothing of them is compiled, and no
+// bytes are allocated.
+TEST_F(FeaturesOff, CellsAreSplitInFinishedPicturesAlone) {
+  struct Made {
+    std::string programs;
+    std::size_t gpuBytes;
+  };
+  const auto draw = [](bool wholePictures, CacheTransport transport, int split, bool smooths) {
+    gl::ProgramLibrary library;
+    RenderSettings settings;
+    settings.size = {48, 32};
+    settings.shadow.size = 256;
+    settings.of<ReflectiveShadowMap::Settings>().size = 64;
+    settings.wholePictures = wholePictures;
+    auto& cache = settings.of<IrradianceCacheSettings>();
+    cache.cascades.cells = 8;
+    cache.transport = transport;
+    cache.samples = 16;
+    cache.split = split;
+    cache.smooths = smooths;
+    const Scene scene = test::openBox();
+    Renderer renderer(context(), library, scene, settings);
+    renderer.renderToTheEnd(test::openBoxCamera());
+    std::string programs;
+    for (const auto& program : library.programs())
+      for (const std::string& resource : program->activeResources())
+        programs += program->name() + ":" + resource + "\n";
+    return Made{programs, renderer.gpuBytes()};
+  };
+  const auto has = [](const Made& made, const char* part) { return made.programs.find(part) != std::string::npos; };
+  const Made on = draw(true, CacheTransport::rays, 4, true), motion = draw(false, CacheTransport::rays, 4, true),
+             off = draw(true, CacheTransport::rays, 1, false), gathered = draw(true, CacheTransport::gather, 4, true);
+  for (const char* part : {"cache mark parts", "cache claim parts", "cache store parts", "cacheParts", "cacheTiles",
+                           "shareOfParts", "pathsOfRound"}) {
+    EXPECT_TRUE(has(on, part)) << part << " in\n" << on.programs;
+    for (const Made* made : {&motion, &off, &gathered}) EXPECT_FALSE(has(*made, part)) << part;
+  }
+  EXPECT_EQ(motion.gpuBytes, off.gpuBytes);
+  EXPECT_LT(off.gpuBytes, on.gpuBytes);
+}
+
 }  // namespace

@@ -326,6 +326,91 @@ TEST_F(IrradianceCacheGl, AWallBesideASunlitFloor) {
       "a sunlit floor");
 }
 
+// ---- finished pictures
+
+/// The foot of a wall beside a narrow sunlit strip of floor: light that changes much within a cell.
+struct Foot : FloorAndWall {
+  static constexpr double kWidth = 0.3;
+  Foot() {
+    builder = SceneBuilder();
+    builder.plate({kWidth / 2, 0.0, 0.0}, {0, 0, 2}, {kWidth, 0, 0}, builder.material(glm::vec3(0.8f)));
+    builder.plate({0.0, 1.5, 0.0}, {0, 3, 0}, {0, 0, 4}, builder.material(glm::vec3(0.5f)));
+    builder.sun({0, -1, 0}, glm::vec3(std::numbers::pi_v<float>));
+    camera = lookingAt({1.6, 0.3, 0.1}, {0.0, 0.1, 0.0}, 0.2);
+  }
+  struct Error {
+    double relative, mean;  ///< mean over the exact one
+  };
+  Error of(const Image& seen) const {
+    const glm::dvec3 strip[] = {{0, 0, -1}, {kWidth, 0, -1}, {kWidth, 0, 1}, {0, 0, 1}};
+    Image expected(seen.width, seen.height), shown(seen.width, seen.height);
+    for (int y = 0; y < seen.height; ++y)
+      for (int x = 0; x < seen.width; ++x) {
+        const glm::dvec3 ray = test::pixelRay(camera, x, y, {seen.width, seen.height});
+        const glm::dvec3 p = camera.position - camera.position.x / ray.x * ray;
+        if (p.y < 0.01 || p.y > 0.15) continue;  // within a cell
+        shown.at(x, y) = glm::vec3(seen.at(x, y).x);
+        expected.at(x, y) =
+            glm::vec3(static_cast<float>(0.5 / kPi * 0.8 * kPi * reference::pointToPolygon(p, {1, 0, 0}, strip)));
+      }
+    return {relativeError(shown, expected), meanOf(shown).x / meanOf(expected).x};
+  }
+};
+
+TEST_F(IrradianceCacheGl, CellsAreSplitWhereSurfacesMeet) {
+  Foot foot;
+  RenderSettings s = settings(1, 1024, Component::indirect);
+  s.of<IrradianceCacheSettings>().split = 4;
+  s.of<IrradianceCacheSettings>().splitShare = 100.0f;
+  const Picture whole = picture(foot.builder.scene(), foot.camera, s);
+  s.wholePictures = true;
+  const Picture split = picture(foot.builder.scene(), foot.camera, s);
+  const Foot::Error before = foot.of(whole.image), now = foot.of(split.image);
+  report("foot of a wall, relative error with whole cells", before.relative);
+  report("with split cells", now.relative);
+  report("mean over the exact one", now.mean);
+  EXPECT_LT(now.relative, 0.4 * before.relative);
+  EXPECT_LT(now.relative, 0.04);
+  EXPECT_NEAR(now.mean, 1.0, 0.02);
+  EXPECT_GT(split.counts.records, whole.counts.records);
+}
+
+TEST_F(IrradianceCacheGl, AWallFarFromOtherSurfacesIsNotSplit) {
+  FloorAndWall room;
+  Camera above = room.camera;
+  above.position.y = 2.6, above.direction = glm::dvec3(-1.0, 0.0, 0.0);
+  RenderSettings s = settings(1, 64);
+  s.wholePictures = true;
+  s.of<IrradianceCacheSettings>().split = 4;
+  s.of<IrradianceCacheSettings>().cascades.cells = 40;
+  Scene scene = room.builder.scene();
+  scene.environment = Environment{};
+  scene.environment->radiance = glm::vec3(1.0f);
+  const std::uint64_t split = picture(scene, above, s).counts.records;
+  s.of<IrradianceCacheSettings>().split = 1;
+  EXPECT_EQ(split, picture(scene, above, s).counts.records);
+}
+
+TEST_F(IrradianceCacheGl, NoiseIsSmoothed) {
+  FloorAndWall sunlit;
+  sunlit.builder.sun({0, -1, 0}, glm::vec3(std::numbers::pi_v<float>));
+  RenderSettings s = FloorAndWall::fine(settings(1, 256, Component::indirect));
+  s.of<IrradianceCacheSettings>().split = 1;
+  s.wholePictures = true;
+  const auto drawn = [&](int samples, bool smooths) {
+    s.of<IrradianceCacheSettings>().samples = samples;
+    s.of<IrradianceCacheSettings>().smooths = smooths;
+    return picture(sunlit.builder.scene(), sunlit.camera, s).image;
+  };
+  const Image expected = drawn(8192, false), noisy = drawn(256, false), smooth = drawn(256, true);
+  report("noise of 256 paths", relativeError(noisy, expected));
+  report("smoothed", relativeError(smooth, expected));
+  EXPECT_LT(relativeError(smooth, expected), 0.7 * relativeError(noisy, expected));
+  EXPECT_NEAR(meanOf(smooth).x / meanOf(expected).x, 1.0, 0.005);
+  // Where there is no noise nothing changes.
+  EXPECT_LT(relativeError(drawn(8192, true), expected), 0.005);
+}
+
 TEST_F(IrradianceCacheGl, AWallBesideAFloorUnderALamp) {
   {
     FloorAndWall room;
