@@ -219,7 +219,8 @@ void claimFor(Surface surface, uint triangle) {
   atomicMax(work.allGroupsX, index / uint(CACHE_LANES) + 1u);
   records[index] = CacheRecord(ivec4(cell, k * CACHE_FACES + face), triangle,
                                CACHE_FIRST | (surface.front ? CACHE_FRONT : 0u), keptBarycentrics.x, keptBarycentrics.y,
-                               vec3(0.0), 0u, position, cache.frame, surface.normal, 0u, vec3(0.0), 0.0, 0.0, 0.0, 0.0, 0.0);
+                               vec3(0.0), 0u, position, cache.frame, surface.normal, 0u, vec3(0.0), 0.0, 0.0, 0.0, 0.0,
+                               0.0);
 }
 #endif
 

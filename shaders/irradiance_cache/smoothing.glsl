@@ -3,8 +3,8 @@
 // what is structure stays.
 uniform float pathsOfRound;
 
-// Squared standard error of a record's irradiance, in cacheUnit(), from the scatter of its rounds of paths: an upper bound, since the
-// rounds are stratified among each other (rays/random.glsl).
+// Squared standard error of a record's irradiance, in cacheUnit(), from the scatter of its rounds of paths: an upper
+// bound, since the rounds are stratified among each other (rays/random.glsl).
 float squaredError(float squares, uint paths) {
   float rounds = float(paths) / pathsOfRound;
   return squares / max(rounds * (rounds - 1.0), 1.0);
