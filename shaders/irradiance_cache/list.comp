@@ -10,6 +10,7 @@ layout(std140, binding = BLOCK_CACHE_PATHS) uniform PathBlock { PathConstants tr
 #include "rays/bsdf.glsl"
 #include "rays/materials.glsl"
 #include "rays/bvh.glsl"
+#include "lib/clamped_int.glsl"
 #include "irradiance_cache/lookup.glsl"
 #include "irradiance_cache/work.glsl"
 layout(std430, binding = CACHE_WORK_BUFFER) restrict buffer CacheWorkBlock { CacheWork work; };
@@ -59,8 +60,8 @@ float shareBlockedNearby(Surface surface, uint triangle, ivec4 cell) {
 
 #if SPLIT
 // Where other surfaces are close, light changes within a cell [Ward1988]: whether some are nearer than kReach cells in
-// at least kShare of the cosine-weighted hemisphere. On a floor that is x kReach cells from a wall's foot, that share is
-// the part of the unit disc beyond x: 5 % for x = 0.8.
+// at least kShare of the cosine-weighted hemisphere. On a floor x kReach cells from a wall's foot, that share is the
+// part of the unit disc beyond x: 5 % for x = 0.8.
 bool isClose(Surface surface, uint triangle, ivec4 cell) {
   const float kReach = 1.5, kShare = 0.05;
   const uint kRays = 32u;
@@ -115,13 +116,13 @@ void main() {
   // It counts by lean^2 at most; but the light of a round sphere is that of all its axes.
   const float kFewest = 64.0;
   float lean = records[index].normal[cell.w % CACHE_FACES / 2];
-  target = min(target, uint(max(kFewest, float(target) * min(2.0 * lean * lean, 1.0))));
+  target = min(target, uint(clampedInt(max(kFewest, float(target) * min(2.0 * lean * lean, 1.0)), 0, 1 << 30)));
 #endif
 #if SPLIT
   if (isPart(cell)) {
     const float kLeast = 2.0 * float(PATHS);  // for an estimate of the noise
     float each = shareOfParts * float(pathTarget) * float(work.wanted - work.parts) / float(work.parts);
-    target = min(target, uint(clamp(each, kLeast, 4e9)));
+    target = min(target, uint(clampedInt(max(each, kLeast), 0, 1 << 30)));
   }
   if ((records[index].state & CACHE_CLOSE) != 0u) {
     int slot = slotOf(cascadeOf(cell), cell.w % CACHE_FACES, cell.xyz);

@@ -1,5 +1,5 @@
-// Light of the parts of split cells in finished pictures: that of the cells around, and as much of the difference of the
-// part's own record as is more than noise. Runs after store.comp.
+// Light of the parts of split cells in finished pictures: that of the cells around, and as much of the difference of
+// the part's own record as is more than noise. Runs after store.comp.
 layout(local_size_x = 64) in;
 #include "irradiance_cache/lookup.glsl"
 #include "lib/clamped_int.glsl"

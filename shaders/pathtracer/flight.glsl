@@ -125,6 +125,19 @@ void considerCollision(inout Split split, vec3 scattered, float t) {
     split.place = t;
   }
 }
+
+// The part that the path follows: true if that is what scatters, at t. collided: by chance, at t, in the end.
+bool choosePart(inout Path path, inout Split split, bool collided, float u, inout float t) {
+  if (collided) {
+    considerCollision(split, path.throughput, t);
+    path.throughput = vec3(0.0);
+  }
+  float probability;
+  bool scatters = followsScattered(path, sumOf(path.throughput), split.sum, u, probability);
+  path.throughput = (scatters ? split.sum * split.scattered : path.throughput) / probability;
+  if (scatters) t = split.place;
+  return scatters;
+}
 #endif
 
 // Delta tracking over the free part of the ray. After a number of tentative collisions the flight is interrupted and
@@ -190,16 +203,7 @@ int trackDensity(inout Path path, MediumRecord medium, float distance, PathNumbe
     }
   }
 #if SPLITS_FLIGHTS
-  if (splits) {
-    if (collided) {
-      considerCollision(split, path.throughput, t);
-      path.throughput = vec3(0.0);
-    }
-    float probability;
-    collided = followsScattered(path, sumOf(path.throughput), split.sum, unitFloat(words.w), probability);
-    path.throughput = (collided ? split.sum * split.scattered : path.throughput) / probability;
-    if (collided) t = split.place;
-  }
+  if (splits) collided = choosePart(path, split, collided, unitFloat(words.w), t);
   uint part = path.part;
 #endif
   vec3 throughput = path.throughput;

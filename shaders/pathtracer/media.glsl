@@ -5,8 +5,8 @@
 //   collision at t:      throughput_c *= sigma_s,c T_c(t) / sum_j q_j r_j exp(-r_j t)
 //   boundary at d <= t:  throughput_c *= T_c(d) / sum_j q_j exp(-r_j d)
 // The rate is sigma_t or, where most is absorbed, sigma_s: light that passes is then weakened instead of lost by chance
-// [SpanierGelbard1969]. As sigma_s <= r <= sigma_t, no weight exceeds the number of channels. exp(-r_min t) is taken out
-// of numerators and denominators, which would underflow from an optical depth of 87 on.
+// [SpanierGelbard1969]. As sigma_s <= r <= sigma_t, no weight exceeds the number of channels. exp(-r_min t) is taken
+// out of numerators and denominators, which would underflow from an optical depth of 87 on.
 #include "shared/media.h"
 #include "pathtracer/numeric.glsl"
 #include "pathtracer/phase.glsl"
