@@ -265,7 +265,7 @@ TEST_F(Measure, BenchErrorReportsAndGoesOnWhereItWas) {
   const std::string both = readFileText(path("out") + "/report.html");
   EXPECT_NE(both.find("Beside an earlier program"), std::string::npos);
   EXPECT_NE(both.find(">8.00<"), std::string::npos);
-  EXPECT_NE(both.find("rsm, before"), std::string::npos);
+  EXPECT_NE(both.find("path, before"), std::string::npos);
   earlier.at("bench") = "another, camera default, 32x18";
   std::ofstream(path("earlier.json")) << earlier;
   expectOneLine(RUN_LUCERNA(beside), 2, {"--before", "another, camera default"});
