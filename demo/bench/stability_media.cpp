@@ -111,7 +111,9 @@ void addDepths(std::vector<StabilityCase>& cases) {
                   Slab slab;
                   if (row.depth >= 1e3) slab.halfWidth = 0.5;  // a block: coordinates no larger than necessary
                   const auto s = trace(c, slabScene(grey(row.depth, 1.0), slab), row.samples, row.side);
-                  return Measurement{1.0, s.mean.x + s.mean.y, 2e-5};
+                  // in a thin medium what scatters is followed now and then
+                  const double chance = row.depth < 1.0 ? 4.0 * std::hypot(s.meanError.x, s.meanError.y) : 0.0;
+                  return Measurement{1.0, s.mean.x + s.mean.y, 2e-5 + chance};
                 });
   }
   // A block as wide as it is thick: coordinates resolve a mean free path of 1e-6 of it, but none shorter.

@@ -172,7 +172,8 @@ void orderByNesting(std::vector<Shell>& shells, const std::string& scene) {
 }
 
 /// The albedo below which a channel's collisions are drawn at the rate of its scattering alone, and absorption is a
-/// weight: otherwise chance would decide whether light gets through, and most paths would end.
+/// weight: otherwise chance would decide whether light gets through, and most paths would end. Not in media that emit:
+/// their light would be sought far beyond where it comes from.
 constexpr float kAbsorbing = 0.25f;
 
 }  // namespace
@@ -192,7 +193,8 @@ PackedMedia packMedia(const std::vector<Medium>& media, const glm::dvec3& origin
       // A channel that does not scatter has no g: it copies the others, so that all can be equal.
       record.albedo[c] =
           extinction[c] > 0.0 ? static_cast<float>(static_cast<double>(medium.scattering[c]) / extinction[c]) : 0.0f;
-      record.rate[c] = record.albedo[c] < kAbsorbing ? medium.scattering[c] : static_cast<float>(extinction[c]);
+      const bool isWeight = record.albedo[c] < kAbsorbing && medium.emission == glm::vec3(0.0f);
+      record.rate[c] = isWeight ? medium.scattering[c] : static_cast<float>(extinction[c]);
       record.oneMinusG[c] = static_cast<float>(1.0 - g);
       record.onePlusG[c] = static_cast<float>(1.0 + g);
     }

@@ -12,6 +12,7 @@
 #include "pathtracer/phase.glsl"
 
 const float kFar = 1e30;  // a distance that no scene has; its products with coefficients stay finite
+const float kLeastDensity = 1e-37;  // no channel is live where a path's throughput has underflowed: its weight is 0
 
 // Zero for zero throughput: there is no channel to choose then, and no path to continue.
 vec3 channelProbabilities(vec3 throughput) {
@@ -50,7 +51,7 @@ vec3 collisionWeight(MediumRecord medium, vec3 q, float t) {
   bvec3 live = bvec3(vec3(greaterThan(q, vec3(0.0))) * vec3(greaterThan(medium.rate, vec3(0.0))));
   float least = leastOf(medium.rate, live);
   return relativeTransmittance(medium.extinction, live, least, t) /
-         dot(q, medium.rate * relativeTransmittance(medium.rate, live, least, t));
+         max(dot(q, medium.rate * relativeTransmittance(medium.rate, live, least, t)), kLeastDensity);
 }
 
 vec3 scatteringWeight(MediumRecord medium, vec3 q, float t) {
@@ -64,7 +65,7 @@ vec3 passageWeight(MediumRecord medium, vec3 q, float d) {
   bvec3 live = greaterThan(q, vec3(0.0));
   float least = leastOf(medium.rate, live);
   return relativeTransmittance(medium.extinction, live, least, d) /
-         dot(q, relativeTransmittance(medium.rate, live, least, d));
+         max(dot(q, relativeTransmittance(medium.rate, live, least, d)), kLeastDensity);
 }
 
 vec3 phaseValue(MediumRecord medium, vec3 w, vec3 to) {

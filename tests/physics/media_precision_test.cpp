@@ -115,6 +115,11 @@ TEST_F(MediaPrecision, WhatOnlyAbsorbsHasNoNoise) {
   for (const glm::vec3& pixel : picture(slabBeforeSky(medium), 1).pixels)
     for (int c = 0; c < 3; ++c)
       EXPECT_NEAR(pixel[c], std::exp(-medium.absorption[c]), 1e-5 * std::exp(-medium.absorption[c])) << c;
+  // Of so much absorption that throughput is 0, before another medium: no light, and a number.
+  Scene scene = slabBeforeSky(homogeneous(glm::dvec3(0.0), glm::dvec3(300.0), 0.0));
+  scene.media.push_back(homogeneous(glm::dvec3(0.5), glm::dvec3(0.5, 0.2, 0.0), 0.0));
+  addBox(scene, {-30.0, -2.0, -30.0}, {30.0, -0.5, 30.0}, addBoundary(scene, Bsdf::none, 1.0, 1));
+  for (const glm::vec3& pixel : picture(scene, 4).pixels) EXPECT_EQ(pixel, glm::vec3(0.0f));
 }
 
 TEST_F(MediaPrecision, AWispIsInMostSamples) {
