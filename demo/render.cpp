@@ -67,7 +67,7 @@ int inspect(const RenderOptions& options) {
     throwBadInput("--inspect {}: with path tracing accepts --spp, --bounces and --seed", options.inspected);
   RenderSettings settings = options.picture.parse();
   settings.pixelSamples = 1;  // what lit its centre
-  settings.fullFloatTarget = true;
+  settings.fullFloatTarget = settings.wholePictures = true;
   chooseDirectLight(settings);
   const glm::ivec2 pixel = parsePixel(options.inspected, settings.size);
   const auto [scene, camera] = options.scene.load();

@@ -104,14 +104,16 @@ void observe(const ErrorBench& bench, const PathSeries& series, int seed,
   const auto made = Clock::now();
   PathTracer tracer(bench.context, bench.programs, bench.scene, settingsOf(bench, series, seed));
   tracer.setCamera(bench.camera);
-  // Preparation: the driver finishes the program on first use, and submissions grow until each takes its share of a
-  // second.
+  // Preparation: the driver finishes each program on first use, path tracing once more after the denoiser's have left
+  // their textures bound; and submissions grow until each takes its share of a second.
   std::optional<Denoiser> denoiser;
   if (series.denoised) denoiser.emplace(bench.programs, tracer);
-  tracer.record(kWarmUp);
-  if (denoiser) denoiser->denoise();
-  tracer.setCamera(bench.camera);
-  if (denoiser) denoiser->forget();
+  for (int i = 0; i < (denoiser ? 2 : 1); ++i) {
+    tracer.record(kWarmUp);
+    if (denoiser) denoiser->denoise();
+    tracer.setCamera(bench.camera);
+    if (denoiser) denoiser->forget();
+  }
   gl::finish();
   const double setup = std::chrono::duration<double, std::milli>(Clock::now() - made).count();
   double spent = 0.0, cpu = 0.0;
