@@ -107,9 +107,10 @@ void PathOptions::declare(Command app) {
       "makes one picture of all parts");
   app.addOption("--part", part, "path: K/N, part K of N, from 0, of the samples of --spp, as --samples");
   app.addOption("--save-every", saveEvery, "path: seconds between checkpoints").showDefault().range(0.0, 1e6);
-  app.addFlag("--denoise", denoise,
-              "path: the picture denoised, with its error; it is never worse than the raw one in expectation, and no "
-              "reference is denoised");
+  app.addFlag(
+      "--denoise", denoise,
+      "path: the picture denoised, with its error; by relative squared error it is never worse than the raw one of "
+      "the same samples in expectation, and no reference is denoised");
   app.addOption("--seed", seed, "path: seed of the random numbers (0)");
 }
 
