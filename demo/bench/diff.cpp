@@ -16,9 +16,8 @@
 #include "bench/diff.hpp"
 
 #include "base/error.hpp"
-#include "base/files.hpp"
 #include "base/statistics.hpp"
-#include "bench/error_rows.hpp"
+#include "bench/error_report.hpp"
 #include "host/host.hpp"
 #include "shared/completions.hpp"
 
