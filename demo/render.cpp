@@ -67,10 +67,11 @@ int inspect(const RenderOptions& options) {
     throwBadInput("--inspect {}: with path tracing accepts --spp, --bounces and --seed", options.inspected);
   RenderSettings settings = options.picture.parse();
   settings.pixelSamples = 1;  // what lit its centre
-  settings.fullFloatTarget = settings.wholePictures = true;
+  settings.fullFloatTarget = true;
   chooseDirectLight(settings);
   const glm::ivec2 pixel = parsePixel(options.inspected, settings.size);
   const auto [scene, camera] = options.scene.load();
+  settings.wholePictures = !scene.motion;  // else it is the picture that a recording has of the moment
   const auto host = options.common.makeHost(false);
   const gl::Context context;
   gl::ProgramLibrary programs;
@@ -105,11 +106,12 @@ int runRender(RenderOptions options) {
     return renderPath(options.common, options.picture, options.path, options.scene, options.output);
   if (options.output.empty()) throwBadInput("--output is missing: the file for the picture");
   RenderSettings settings = options.picture.parse();
-  settings.fullFloatTarget = settings.wholePictures = true;
+  settings.fullFloatTarget = true;
   chooseDirectLight(settings);
   if (!isWritableImageName(options.output))
     throwBadInput("-o {}: the extension must be png, hdr, exr or pfm", options.output);
   const auto [scene, camera] = options.scene.load();
+  settings.wholePictures = !scene.motion;  // else it is the picture that a recording has of the moment
 
   // Render.
   const auto host = options.common.makeHost(false);
