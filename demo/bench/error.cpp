@@ -209,6 +209,12 @@ std::unique_ptr<ErrorBenchResult> runErrorBench(const gl::Context& context, gl::
                                   context.capabilities().renderer, cpuName()),
                       points.size() + plan.withPath);
   };
+  auto result = std::make_unique<ErrorBenchResult>();
+  if (!options.before.empty()) {
+    result->report.before = readErrorReport(options.before);
+    if (const auto bench = result->report.before.at("bench"); bench != plan.title)
+      throwBadInput("--before {}: is of {}; this is {}", options.before, bench.get<std::string>(), plan.title);
+  }
   // Open the folder, with results of an earlier run or of parts.
   const bool isPart = options.part.isPart();
   if (isPart && options.referenceSamples > 0 && !hasReferences(plan.references(context, programs, options)))
@@ -229,12 +235,6 @@ std::unique_ptr<ErrorBenchResult> runErrorBench(const gl::Context& context, gl::
   makeFolder(folder);
   if (part && !isPart) copyUnits(*part->folder(), folder);
 
-  auto result = std::make_unique<ErrorBenchResult>();
-  if (!options.before.empty()) {
-    result->report.before = readErrorReport(options.before);
-    if (const auto bench = result->report.before.at("bench"); bench != plan.title)
-      throwBadInput("--before {}: is of {}; this is {}", options.before, bench.get<std::string>(), plan.title);
-  }
   auto references = obtainReferences(plan.references(context, programs, options, folder / "references"));
   if (!references) return result;
   result->references = std::move(*references);

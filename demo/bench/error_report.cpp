@@ -508,9 +508,10 @@ bool plotAllLight(const fs::path& folder, const ErrorReport& report) {
     if (flag(row, "pareto") && !flag(row, "at_noise"))
       front.points.push_back({number(row, "ms"), 100.0 * number(row, "l2"), fmt::format("{:g}", number(row, "front"))});
   }
+  const std::vector<ErrorRow> rowsOfBefore = rowsBefore(report);
   for (const auto& [name, style] : styles) {
     Series before{name + ", before", {}, true, false, true, style};
-    for (const ErrorRow& row : rowsBefore(report))
+    for (const ErrorRow& row : rowsOfBefore)
       if (text(row, "series") == name && !flag(row, "at_noise"))
         before.points.push_back({number(row, "ms"), 100.0 * number(row, "l2"), ""});
     if (!before.points.empty()) plot.series.push_back(before);
@@ -556,7 +557,6 @@ bool plotInside(const fs::path& folder, const ErrorReport& report) {
 }  // namespace
 
 nlohmann::ordered_json readErrorReport(const std::string& path) {
-  namespace fs = std::filesystem;
   const fs::path file = fs::is_directory(path) ? fs::path(path) / "error.json" : fs::path(path);
   nlohmann::ordered_json report = nlohmann::ordered_json::parse(readFileText(file), nullptr, false);
   if (report.is_discarded() || !report.is_object() || !report.contains("rows") || !report.at("rows").is_array() ||

@@ -321,6 +321,7 @@ gl::ShaderFlags PathTracer::kernelFlags() const {
   return all;
 }
 
+// Flights split in all media that scatter, but where paths walk: there what scatters takes a hundred times as long.
 void PathTracer::markSplitMedia(const Scene& scene, PackedMedia& packed) {
   const PathDeviations& deviations = settings_.deviations;
   if (features_.volumeEmission || deviations.rouletteWithoutDivision || deviations.distanceWithoutPdf ||

@@ -42,37 +42,32 @@ bool isBrightBeside(ivec4 cell, vec3 light) {
   return isBright;
 }
 
-// Share of a surface's cosine-weighted hemisphere in which another surface is much nearer than its cell is wide, and
-// than the camera is: a cell may be as large as a room.
-float shareBlockedNearby(Surface surface, uint triangle, ivec4 cell) {
-  const float kOfCell = 1.0 / 8.0, kOfView = 1.0 / 64.0;
+// Share of a surface's cosine-weighted hemisphere in which another surface is within reach.
+float shareWithin(float reach, Surface surface, uint triangle) {
   const uint kRays = 32u;
-  float reach = min(kOfCell * grids.cascades[cascadeOf(cell)].cellSize,
-                    kOfView * distance(surface.position, tracer.cameraPosition));
   vec3 start = offsetRay(surface.position, surface.geometricNormal, surface.magnitude);
-  uint blocked = 0u;
+  uint met = 0u;
   for (uint i = 0u; i < kRays; ++i) {
     vec2 xi = vec2((float(i) + 0.5) / float(kRays), fract(0.618034 * float(i)));
-    blocked += uint(anyHit(Ray(start, 0.0, cosineSample(surface.geometricNormal, xi), reach), triangle));
+    met += uint(anyHit(Ray(start, 0.0, cosineSample(surface.geometricNormal, xi), reach), triangle));
   }
-  return float(blocked) / float(kRays);
+  return float(met) / float(kRays);
+}
+
+// That of surfaces much nearer than a cell is wide, and than the camera is: a cell may be as large as a room.
+float shareBlockedNearby(Surface surface, uint triangle, ivec4 cell) {
+  const float kOfCell = 1.0 / 8.0, kOfView = 1.0 / 64.0;
+  return shareWithin(min(kOfCell * grids.cascades[cascadeOf(cell)].cellSize,
+                         kOfView * distance(surface.position, tracer.cameraPosition)), surface, triangle);
 }
 
 #if SPLIT
 // Where other surfaces are close, light changes within a cell [Ward1988]: whether some are nearer than kReach cells in
-// at least kShare of the cosine-weighted hemisphere. On a floor x kReach cells from a wall's foot, that share is the
-// part of the unit disc beyond x: 5 % for x = 0.8.
+// at least kShare of the hemisphere. On a floor x kReach cells from a wall's foot, that share is the part of the unit
+// disc beyond x: 5 % for x = 0.8.
 bool isClose(Surface surface, uint triangle, ivec4 cell) {
   const float kReach = 1.5, kShare = 0.05;
-  const uint kRays = 32u;
-  float reach = kReach * grids.cascades[cascadeOf(cell)].cellSize;
-  vec3 start = offsetRay(surface.position, surface.geometricNormal, surface.magnitude);
-  uint close = 0u;
-  for (uint i = 0u; i < kRays; ++i) {
-    vec2 xi = vec2((float(i) + 0.5) / float(kRays), fract(0.618034 * float(i)));
-    close += uint(anyHit(Ray(start, 0.0, cosineSample(surface.geometricNormal, xi), reach), triangle));
-  }
-  return float(close) >= kShare * float(kRays);
+  return shareWithin(kReach * grids.cascades[cascadeOf(cell)].cellSize, surface, triangle) >= kShare;
 }
 #endif
 

@@ -101,7 +101,7 @@ const uint kMostTracked = 64u;  // tentative collisions of a flight before it is
 #if SPLITS_FLIGHTS
 // After so many tentative collisions, or once a tenth of the light is left, chance decides.
 const uint kMostSplit = 48u;
-const float kLeastSplit = 0.3;
+const float kLeastSplit = 0.3;  // of the three channels together
 const float kSplitPlaces = 4.0;  // tentative collisions on a way through the whole grid, at least
 
 // Both outcomes of a flight in a grid: every tentative collision scatters its share of the light that still passes. One

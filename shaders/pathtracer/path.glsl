@@ -37,7 +37,7 @@ struct Path {
   float ior;            // at the ray's origin
   uint chain;           // smooth scatterings in a row so far
 #if PARTS
-  uint part;            // of its sample: kWhole, kFirst or kSecond
+  uint part;            // of its sample: kWhole ... kLast
 #endif
 #if INTERIORS
   uvec4 inside;         // the closed boundaries that contain the path (boundary.glsl)
