@@ -130,6 +130,14 @@ int groupsOf(const glm::ivec2& size) {
   return groups.x * groups.y;
 }
 
+/// Whether a pixel's number, as in findPixel() of path.glsl, is one of a tile of this size.
+bool isWithin(std::uint32_t number, const glm::ivec2& size) {
+  const int group = static_cast<int>(number) / kGroupPixels, within = static_cast<int>(number) % kGroupPixels,
+            columns = (size.x + kGroupSide - 1) / kGroupSide;
+  return group % columns * kGroupSide + within % kGroupSide < size.x &&
+         group / columns * kGroupSide + within / kGroupSide < size.y;
+}
+
 /// Side of a tile whose lanes' state fits in a storage block.
 int tileSideOn(const gl::Capabilities& capabilities, std::size_t stateWords) {
   int side = capabilities.softwareRenderer ? 128 : 512;
@@ -546,11 +554,13 @@ bool PathTracer::submit(std::uint32_t samples, Passes passes) {
     finished_ = 0;
     turn_ = 0;
     if (sharesPixels()) {
-      // All pixels wait, by number, and beyond the tile's edge as many as its groups have.
+      // All pixels wait, by number. Those of its groups that lie beyond the tile's edge do not: a lane must find one in
+      // every submission, as each may have time for one only.
+      std::vector<glm::uvec4> queue;
+      for (std::uint32_t number = 0; number < static_cast<std::uint32_t>(groupsOf(size) * kGroupPixels); ++number)
+        if (isWithin(number, size)) queue.emplace_back(number, 0, 0, 0);
       StateHeader header;
-      header.tails[0] = static_cast<std::uint32_t>(groupsOf(size) * kGroupPixels);
-      std::vector<glm::uvec4> queue(header.tails[0]);
-      for (std::uint32_t i = 0; i < queue.size(); ++i) queue[i].x = i;
+      header.tails[0] = static_cast<std::uint32_t>(queue.size());
       state_.upload(0, sizeof header, &header);
       state_.upload(kStateHeaderBytes + static_cast<std::size_t>(constants_.picture.z) * stateWords() * kVec4Bytes,
                     queue.size() * kVec4Bytes, queue.data());
@@ -567,6 +577,8 @@ bool PathTracer::submit(std::uint32_t samples, Passes passes) {
   const auto start = Clock::now();
   dispatch(corner, size, samplesOfTile(passTarget_));
   const auto header = counters_.readFirst<StateHeader>(state_);
+  gl::throwIfReset();
+  gl::throwIfError("path tracing");
   finished_ += header.finished;
   const auto unfinished = static_cast<std::uint32_t>(lanes) - finished_;
   CHECK(unfinished == 0 || header.allIterations > 0, "path tracing has lost {} pixels: a loop was left early",
@@ -575,8 +587,6 @@ bool PathTracer::submit(std::uint32_t samples, Passes passes) {
   wrongCrossings_ += header.wrongCrossings;
   iterationsTaken_ += header.allIterations;
   collisions_ += header.collisions;
-  gl::throwIfReset();
-  gl::throwIfError("path tracing");
   const auto taken = static_cast<std::uint64_t>(lanes) * header.longest;
   largest_ = std::max(largest_, taken);
   if (begins) largestBegun_ = std::max(largestBegun_, taken);
