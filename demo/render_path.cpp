@@ -95,7 +95,8 @@ void PathOptions::declare(Command app) {
   app.addOption("--seconds", seconds, "path: stop after this time, with at least one sample per pixel").positive();
   app.addOption("--error", error,
                 "path: stop when the pixels' standard error (root mean square) is this fraction of the mean radiance; "
-                "of n samples that found no light, 3 count as if they could have")
+                "of n samples that found no light, 3 count as if they could have. With --denoise: or when the "
+                "upper end of the denoised picture's error is")
       .positive();
   app.addOption("--bounces", bounces, "path: maximum number of scatterings (no limit)");
   app.addOption("--checkpoint", checkpoint,
@@ -200,6 +201,16 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
     } catch (const Error& error) { logWarning("--checkpoint {}; rendering continues without it", error.what()); }
     saved = elapsed();
   };
+  // Of the denoised picture, which is no worse than the raw one, the upper end of the error counts. Finding it costs a
+  // few samples, so it is looked for each time they have grown by half.
+  std::uint32_t denoisedAt = 0;
+  const auto isWithin = [&](double wanted) {
+    if (done >= 4 && tracer.statistics().relativeError <= wanted) return true;
+    if (!denoiser || done < std::max(Denoiser::kFewestSamples, denoisedAt + denoisedAt / 2)) return false;
+    denoiser->denoise();
+    denoisedAt = done;
+    return denoiser->error().high <= wanted;
+  };
   // Sample in steps: between them the error is checked, and all pixels have the same number of samples.
   while (done < target && !stopped) {
     const std::uint32_t next = std::min(target, done + std::max(1u, done / 4));
@@ -211,7 +222,7 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
     saveNowAndThen();
     progress.update(static_cast<int>(std::min(done, 1000000000u)));
     stopped = stopped || interrupted() || (path.seconds && elapsed() >= *path.seconds) ||
-              (path.error && done >= 4 && tracer.statistics().relativeError <= *path.error);
+              (path.error && isWithin(*path.error));
     if (path.error && !stopped && done < target && tracer.statistics().mean == glm::dvec3(0.0) &&
         static_cast<double>(done) * settings.size.x * settings.size.y >= kMostDark) {
       logWarning("--error: none of {} samples a pixel has found light; the picture is black", done);

@@ -2,10 +2,14 @@
 #include "pathtracer/media.hpp"
 
 #include "base/error.hpp"
+#include "base/log.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <tuple>
 
 namespace lucerna {
@@ -224,6 +228,23 @@ PackedMedia packMedia(const std::vector<Medium>& media, const glm::dvec3& origin
     packed.media.push_back(record);
   }
   return packed;
+}
+
+void checkOuterMedium(const Scene& scene, const SceneFeatures& features) {
+  if (scene.cameraMedium < 0) return;
+  const Medium& medium = scene.media[static_cast<std::size_t>(scene.cameraMedium)];
+  const glm::vec3 extinction = medium.scattering + medium.absorption;
+  const bool isBlack = !medium.grid && std::min({extinction.x, extinction.y, extinction.z}) > 0.0f;
+  const bool isLitFromAfar = features.directionalLight || features.environment || features.background;
+  if (!isBlack || !isLitFromAfar) return;
+  const std::string why = fmt::format(
+      "medium {} has no end, so no light of the sun and the sky gets through it; give it one by a body of a material "
+      "with \"bsdf\": \"none\", \"interior\": \"{}\" in place of \"cameraMedium\"",
+      medium.name, medium.name);
+  const bool isLitWithin =
+      features.emission || features.spotLights || features.pointLights || features.volumeEmission;
+  if (!isLitWithin) throwBadInput("{}: the picture would be black: {}", scene.name, why);
+  logWarning("{}", why);
 }
 
 PackedBoundaries rankBoundaries(const Scene& scene, bool diffuseOnly) {

@@ -3,6 +3,7 @@
 // Units: scene units of length. Sources: shaders/pathtracer/media.glsl, density.glsl and boundary.glsl.
 #pragma once
 
+#include "scene/features.hpp"
 #include "scene/scene.hpp"
 #include "shared/media.h"
 
@@ -21,6 +22,11 @@ struct PackedMedia {
 /// Throws Error(badInput) naming the medium if a coefficient is negative or not finite, |g| is not below 1, or a grid
 /// is unusable. Boxes are moved by -origin.
 PackedMedia packMedia(const std::vector<Medium>& media, const glm::dvec3& origin = glm::dvec3(0.0));
+
+/// Light from infinitely far does not get through Scene::cameraMedium, which has no end, unless a channel of it is
+/// clear or it is a grid. Throws Error(badInput) if there is no other light, since paths without absorption would then
+/// look for it almost for ever; warns if there is.
+void checkOuterMedium(const Scene& scene, const SceneFeatures& features);
 
 /// Counts of closed boundaries around a point, 4 bits per rank (boundary.glsl).
 using InsideCounts = glm::uvec4;

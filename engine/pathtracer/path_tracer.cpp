@@ -200,6 +200,7 @@ PathTracer::PathTracer(const gl::Context& context, gl::ProgramLibrary& programs,
   if (features_.dielectrics || features_.nullBoundaries)
     interiors_ = storageOf("path interiors", boundaries_.interiors, capabilities);
   if (features_.media) {
+    checkOuterMedium(scene, features_);
     PackedMedia packed = packMedia(scene.media, scene_->origin());
     markSplitMedia(scene, packed);
     media_ = storageOf("path media", packed.media, capabilities);

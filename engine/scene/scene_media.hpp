@@ -11,7 +11,8 @@
 //                      "interior": a name of "media" or of the catalogue, or null: its content; alone it implies a
 //                      dielectric, "priority": integer, the higher one applies where dielectrics overlap,
 //                      "diffuse", "specular": [r,g,b] 0..1, "emission": [r,g,b], radiance}}
-//   "cameraMedium": a name of "media" or of the catalogue
+//   "cameraMedium": a name of "media" or of the catalogue, around everything and without an end: light of sun and sky
+//                   does not get through it
 // Coefficients are per millimetre, so a scene with media must give its "scale".
 #pragma once
 

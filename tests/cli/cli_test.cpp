@@ -526,23 +526,44 @@ TEST_F(CommandLine, PathTracingSaysHowGoodThePictureIs) {
 // differ by what each says, and not by the half of it.
 TEST_F(CommandLine, PathTracingStopsAtTheErrorThatThePictureHas) {
   const std::string common =
-      "render '" LUCERNA_SOURCE_DIR "/assets/cornell/cornell.json' --technique path --size 32x32 --error 0.08 ";
-  std::array<lucerna::Image, 2> pictures;
-  double said = 0.0;
-  for (std::size_t k = 0; k < pictures.size(); ++k) {
-    ASSERT_EQ(RUN_LUCERNA(common + "--seed " + std::to_string(k) + " -o " + path("x.pfm") + " --json " + path("x.json"))
-                  .exitCode,
-              0);
-    said += json("x.json").at("standard_error").get<double>() / pictures.size();
-    EXPECT_LE(json("x.json").at("relative_error"), 0.08);
-    pictures[k] = lucerna::readImage(path("x.pfm"));
-  }
-  double squares = 0.0;
-  for (std::size_t i = 0; i < pictures[0].pixels.size(); ++i) {
-    const glm::dvec3 d = glm::dvec3(pictures[0].pixels[i]) - glm::dvec3(pictures[1].pixels[i]);
-    squares += glm::dot(d, d) / (6.0 * static_cast<double>(pictures[0].pixels.size()));
-  }
-  EXPECT_NEAR(std::sqrt(squares) / said, 1.0, 0.2);
+      "render '" LUCERNA_SOURCE_DIR "/assets/cornell/cornell.json' --technique path --size 96x96 --error 0.08 ";
+  struct Stopped {
+    double error = 0.0, samples = 0.0;  ///< from two pictures: root mean square over the mean; samples a pixel
+    double said = 0.0, most = 0.0;  ///< over the mean, as said; with the upper end
+  };
+  const auto stopped = [&](const std::string& denoise) {
+    Stopped result;
+    std::array<lucerna::Image, 2> pictures;
+    double mean = 0.0, squares = 0.0;
+    for (std::size_t k = 0; k < pictures.size(); ++k) {
+      EXPECT_EQ(RUN_LUCERNA(common + denoise + "--seed " + std::to_string(k) + " -o " + path("x.pfm") + " --json " +
+                            path("x.json"))
+                    .exitCode,
+                0);
+      const nlohmann::json said = json("x.json");
+      const bool isDenoised = !denoise.empty();
+      result.said += (isDenoised ? said.at("denoised").at("error") : said.at("relative_error")).get<double>() / 2.0;
+      result.most = std::max(result.most,
+                             (isDenoised ? said.at("denoised").at("high") : said.at("relative_error")).get<double>());
+      result.samples += said.at("spp").get<double>() / 2.0;
+      pictures[k] = lucerna::readImage(path("x.pfm"));
+    }
+    for (std::size_t i = 0; i < pictures[0].pixels.size(); ++i) {
+      const glm::dvec3 a(pictures[0].pixels[i]), b(pictures[1].pixels[i]);
+      squares += glm::dot(a - b, a - b);
+      mean += glm::dot(a + b, glm::dvec3(0.5));
+    }
+    const double values = 3.0 * static_cast<double>(pictures[0].pixels.size());
+    result.error = std::sqrt(squares / (2.0 * values)) / (mean / values);
+    return result;
+  };
+  const Stopped raw = stopped(""), denoised = stopped("--denoise ");
+  EXPECT_LE(raw.most, 0.08);
+  EXPECT_NEAR(raw.error / raw.said, 1.0, 0.2);
+  // Of the picture shown, the upper end: it needs fewer samples.
+  EXPECT_LE(denoised.most, 0.08);
+  EXPECT_LT(denoised.error, 0.08);
+  EXPECT_LT(denoised.samples, raw.samples);
 }
 
 TEST_F(CommandLine, PathTracingAsPublishedNamesItsDeviations) {

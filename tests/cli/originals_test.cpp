@@ -129,13 +129,16 @@ void makeScenes(const fs::path& folder, bool atrium) {
     return;
   }
   fs::create_directories(folder / "assets/atrium");
+  for (const char* name : {"haze.obj", "haze.mtl"})
+    fs::create_symlink(source / "assets/atrium" / name, folder / "assets/atrium" / name);
   for (const auto& entry : fs::directory_iterator(source / "assets"))
     if (entry.path().filename() != "atrium")
       fs::create_symlink(entry.path(), folder / "assets" / entry.path().filename());
   for (const char* name : {"assets/atrium/atrium.json", "assets/atrium/haze.json"}) {
     nlohmann::json scene = nlohmann::json::parse(std::ifstream(source / name));
     const nlohmann::json cornell = nlohmann::json::parse(std::ifstream(source / "assets/cornell/cornell.json"));
-    scene["model"] = "../cornell/cornell.obj";
+    nlohmann::json& model = scene["model"];
+    (model.is_array() ? model.at(0) : model) = "../cornell/cornell.obj";
     scene["sun"]["direction"] = cornell.at("sun").at("direction");
     for (nlohmann::json& camera : scene["cameras"]) {  // by the names that rows have
       const std::string view = camera.at("name");

@@ -53,6 +53,31 @@ TEST(PackedMediaUnit, CoefficientsKeepTheirDigits) {
   EXPECT_EQ(record.greyExtinction, 0);
 }
 
+TEST(PackedMediaUnit, LightFromAfarNeedsAMediumThatEnds) {
+  Scene scene;
+  scene.media = {Medium{}};
+  scene.media[0].scattering = glm::vec3(1.0f);
+  scene.cameraMedium = 0;
+  const auto check = [](const Scene& s) { checkOuterMedium(s, analyse(s)); };
+  EXPECT_NO_THROW(check(scene)) << "no light at all";
+  scene.sun = DirectionalLight{};
+  scene.sun->irradiance = glm::vec3(1.0f);
+  EXPECT_THROW(check(scene), Error);
+  Scene red = scene, grid = scene, lamp = scene, bounded = scene, sky = scene;
+  red.media[0].scattering.x = 0.0f;
+  EXPECT_NO_THROW(check(red)) << "a clear channel";
+  grid.media[0].grid = DensityGrid{{1, 1, 1}, {1.0f}, glm::dvec3(0.0), glm::dvec3(1.0)};
+  EXPECT_NO_THROW(check(grid));
+  lamp.points = {PointLight{}};
+  lamp.points[0].intensity = glm::vec3(1.0f);
+  EXPECT_NO_THROW(check(lamp));
+  bounded.cameraMedium = -1;
+  EXPECT_NO_THROW(check(bounded));
+  sky.sun.reset();
+  sky.background = glm::vec3(1.0f);
+  EXPECT_THROW(check(sky), Error);
+}
+
 TEST(PackedMediaUnit, RefusesWhatCannotBe) {
   Medium good;
   good.scattering = glm::vec3(1.0f);
