@@ -100,6 +100,7 @@ class Moments {
         scene_(scene),
         size_(settings.size),
         filter_(settings.filter),
+        transport_(transportOf(settings.component)),
         cache_(options.references.empty() ? measure::ReferenceCache::defaultFolder() : fs::path(options.references)) {
     if (options.followsKeys) path_.emplace(keyFramesOf(scene, scene.keyFrames));
     const int last = options.frames - 1;
@@ -141,7 +142,7 @@ class Moments {
   std::uint64_t firstPath(int k) const { return static_cast<std::uint64_t>(k) * options_.samples; }
 
   measure::ReferenceKey referenceKey(const Moment& moment, int k) const {
-    return measure::keyOf(scene_, moment.camera, size_, Transport::all,
+    return measure::keyOf(scene_, moment.camera, size_, transport_,
                           fmt::format("{}, from {}", PathSampler::versionOf(filter_, true), firstPath(k)));
   }
 
@@ -157,7 +158,7 @@ class Moments {
     const measure::ReferenceKey key = referenceKey(moment, k);
     auto reference = kept(key);
     if (!reference) {
-      PathSampler sampler(context_, programs_, scene_, moment.camera, size_, filter_, Transport::all, true);
+      PathSampler sampler(context_, programs_, scene_, moment.camera, size_, filter_, transport_, true);
       measure::SamplingGoal goal;
       goal.samples = options_.samples;
       reference = measure::obtainReference(
@@ -165,7 +166,7 @@ class Moments {
           [&](std::uint64_t first, std::uint32_t samples) {
             return sampler.asSampler()(firstPath(k) + first, samples);
           },
-          Transport::all, goal, context_.capabilities().renderer, interrupted);
+          transport_, goal, context_.capabilities().renderer, interrupted);
       if (!reference || interrupted()) return false;
       keep(key, *reference);
     }
@@ -222,6 +223,7 @@ class Moments {
   Scene& scene_;
   glm::ivec2 size_;
   PixelFilter filter_;
+  Transport transport_;
   std::optional<Spline> path_;
   measure::ReferenceCache cache_;
   std::optional<PartFolder> part_;

@@ -196,6 +196,26 @@ TEST_F(Motion, BenchDynamicKnowsTheStripBehindAWallThatOpens) {
   }
 }
 
+// A white floor and wall light each other: direct light alone is right against itself, and lacks a part of all.
+TEST_F(Motion, BenchDynamicComparesAComponentWithItsReference) {
+  folder_.write("corner.obj",
+                "v -2 0 -2\nv 2 0 -2\nv 2 0 2\nv -2 0 2\nv -2 2 -2\nv 2 2 -2\nvn 0 1 0\nvn 0 0 1\n"
+                "f 4//1 3//1 2//1 1//1\nf 1//2 2//2 6//2 5//2\n");
+  folder_.write("corner.json", R"({"model": "corner.obj", "environment": null, "sun": null,
+      "camera": {"position": [0, 1, 4], "target": [0, 0.7, 0], "fov": 45},
+      "points": [{"position": {"times": [0, 2], "values": [[-1, 1.5, 0], [1, 1.5, 0]]}, "intensity": [2, 2, 2]}]})");
+  for (const bool isDirect : {false, true}) {
+    const RunResult result = lucerna(
+        "bench dynamic corner.json --techniques direct --frames 3 --size 32x24 --reference-samples 256 "
+        "--references references --out page --set shadow.transport=rays --component " +
+        std::string(isDirect ? "direct" : "all"));
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    const double mean = dynamicJson().at("techniques")[0].at("mean");
+    if (isDirect) EXPECT_LT(mean, 0.02);
+    else EXPECT_GT(mean, 0.1);
+  }
+}
+
 // The budgets of a technique are rows of their own: with more samples the irradiance cache is nearer to the reference.
 TEST_F(Motion, BenchDynamicMeasuresBudgets) {
   const RunResult result =
