@@ -10,15 +10,15 @@
 namespace lucerna {
 
 namespace {
-constexpr GLuint kRadianceUnit = 0, kDepthUnit = 1, kBeforeUnit = 2, kDistanceBeforeUnit = 3;
+constexpr GLuint kRadianceUnit = 0, kDepthUnit = 1, kBeforeUnit = 2, kDistanceBeforeUnit = 3, kMotionUnit = 4;
 // Frames in the mean. A mean is read anew in every frame, which blurs it: beyond four that costs more than what more
-// samples give (docs/measurements/forward.md, Antialiasing). What moves by itself, or is lit anew, is not found where
-// it was. Ten added 2 points to the error of assets/cornell/moving.json (llvmpipe, one run each: 9.0 % for 6.9 %
-// without earlier frames), two nothing (6.8 %): bench dynamic --live --frames 8 --fps 20 --time 1 --size 160x120
-// --reference-samples 64, irradiance-cache.
-constexpr float kMostInMotion = 4.0f, kMostWhereSceneMoves = 2.0f;
+// samples give (docs/measurements/forward.md, Antialiasing). What is lit anew looked other before. Ten added 2 points
+// to the error of assets/cornell/moving.json (llvmpipe, one run each: 9.0 % for 6.9 % without earlier frames), two
+// nothing (6.8 %): bench dynamic --live --frames 8 --fps 20 --time 1 --size 160x120 --reference-samples 64,
+// irradiance-cache.
+constexpr float kMostInMotion = 4.0f, kMostWhereLightMoves = 2.0f;
 // Of path traced frames, whose noise is more than the blur of eight (docs/motion.md).
-constexpr float kMostPathsInMotion = 8.0f, kMostPathsWhereSceneMoves = 4.0f;
+constexpr float kMostPathsInMotion = 8.0f, kMostPathsWhereLightMoves = 4.0f;
 }  // namespace
 
 void Antialiasing::resize(glm::ivec2 size) {
@@ -76,7 +76,8 @@ void Antialiasing::makeHistory() {
     const std::array<const gl::Texture*, 2> targets{&history_->radiance[i], &history_->distance[i]};
     history_->targets[i] = gl::Framebuffer("frames so far", targets);
   }
-  history_->program = &programs_->loadRaster("reprojection", "lib/fullscreen.vert", "forward/reproject.frag");
+  history_->program =
+      &programs_->loadRaster("reprojection", "lib/fullscreen.vert", "forward/reproject.frag", {{"OBJECTS_MOVE", 0}});
 }
 
 void Antialiasing::accumulate(const Frame& frame, bool moves, bool reprojects, int most,
@@ -87,7 +88,10 @@ void Antialiasing::accumulate(const Frame& frame, bool moves, bool reprojects, i
   if (moves || !hasHistory_) atRest_ = current_;
   const bool starts = !hasHistory_ || (moves && !reprojects);
   const gl::RasterPass pass("reprojection", history_->targets[current_], {});
-  const gl::Program& program = *history_->program;
+  if (frame.objectMotion && !history_->programOfMotion)
+    history_->programOfMotion = &programs_->loadRaster("reprojection of objects", "lib/fullscreen.vert",
+                                                       "forward/reproject.frag", {{"OBJECTS_MOVE", 1}});
+  const gl::Program& program = frame.objectMotion ? *history_->programOfMotion : *history_->program;
   program.use();
   const glm::dmat4 worldFromClip =
       glm::inverse(frame.clip) *
@@ -104,14 +108,15 @@ void Antialiasing::accumulate(const Frame& frame, bool moves, bool reprojects, i
   program.set("frames", frame.frames);
   program.set("share", frame.share);
   program.set("isPathTraced", frame.isPathTraced ? 1 : 0);
-  const float mostFrames = frame.isPathTraced ? frame.sceneMoves ? kMostPathsWhereSceneMoves : kMostPathsInMotion
-                           : frame.sceneMoves ? kMostWhereSceneMoves
+  const float mostFrames = frame.isPathTraced ? frame.lightMoves ? kMostPathsWhereLightMoves : kMostPathsInMotion
+                           : frame.lightMoves ? kMostWhereLightMoves
                                               : kMostInMotion;
   program.set("mostInMotion", frame.frames * mostFrames);
   frame.radiance.bind(kRadianceUnit);
   frame.depth.bind(kDepthUnit);
   history_->radiance[before].bind(kBeforeUnit);
   history_->distance[before].bind(kDistanceBeforeUnit);
+  if (frame.objectMotion) frame.objectMotion->bind(kMotionUnit);
   gl::drawFullScreen(noAttributes);
   clip_ = frame.clip;
   hasHistory_ = true;

@@ -1,9 +1,10 @@
 // Smooth edges from frames of one view, each drawn for another point of every pixel (base/pixel_filter.hpp).
 //
 // Still: the frames' plain mean, which converges to the filtered picture. Moving: the mean so far is found in the frame
-// before by the visible surface's place, and limited to what the new frame shows around the pixel, by mean and standard
-// deviation [Salvi2016]; where another surface was seen before, it is dropped. A path traced picture in motion is
-// carried on in the same way, without that limit. Pictures are linear radiance, in scene units.
+// before by the visible surface's place, also that of an object that moves (object_motion.hpp), and limited to what the
+// new frame shows around the pixel, by mean and standard deviation [Salvi2016]; where another surface was seen before,
+// it is dropped. A path traced picture in motion is carried on in the same way, without that limit. Pictures are linear
+// radiance, in scene units.
 #pragma once
 
 #include "gl/objects.hpp"
@@ -34,17 +35,20 @@ class Antialiasing {
     glm::dmat4 clip;  ///< from world, through the pixels' centres
     glm::dvec3 camera;
     glm::dvec2 offset;  ///< of the frame's samples from there, in pixels
-    bool sceneMoves;  ///< surfaces or lights are others than in the frame before
+    bool lightMoves;  ///< lights are others than in the frame before, or surfaces whose motion is not known
     float frames = 1.0f;  ///< that `radiance` is the mean of
     /// Its noise would be taken for another surface's colours, and is not limited. At rest `radiance` is the mean since
     /// the motion's end, and `share` of the frames shown then counts beside it.
     bool isPathTraced = false;
     float share = 1.0f;
+    const gl::Texture* objectMotion = nullptr;  ///< ObjectMotion::texture(), if anything has moved
   };
   /// Adds a frame to the running mean of at most `most` frames; the first one alone starts it. `moves`: the view
   /// differs from that of the frame before. `reprojects`: if not, a moving view shows its new frame alone.
   void accumulate(const Frame& frame, bool moves, bool reprojects, int most, const gl::VertexArray& noAttributes);
   bool hasShown() const { return history_.has_value(); }
+  /// That of the last frame of accumulate().
+  const glm::dmat4& clipBefore() const { return clip_; }
   /// The running mean; alpha: the number of frames in it.
   const gl::Texture& shown() const { return history_->radiance[current_]; }
   void writeShown(const gl::Framebuffer& target, const gl::VertexArray& noAttributes);
@@ -57,6 +61,7 @@ class Antialiasing {
     std::array<gl::Texture, 2> radiance, distance;  ///< of this frame and the one before
     std::array<gl::Framebuffer, 2> targets;
     const gl::Program* program;
+    const gl::Program* programOfMotion = nullptr;  ///< where objects move
   };
   void makeHistory();
   void drawScaled(const gl::Texture& from, float factor, const gl::VertexArray& noAttributes);

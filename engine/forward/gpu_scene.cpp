@@ -5,7 +5,6 @@
 #include "forward/texture_wraps.hpp"
 #include "gl/draw.hpp"
 #include "scene/coat.hpp"
-#include "scene/motion.hpp"
 #include "shared/bindings.h"
 #include "shared/coat.h"
 
@@ -183,6 +182,8 @@ void GpuScene::setValues(Surface& surface, const Material& material) const {
 void GpuScene::replaceMeshes() {
   for (std::size_t i = 0; i < surfaces_.size(); ++i) setValues(surfaces_[i], scene_->materials[i]);
   all_ = {};
+  before_ = {};
+  movedVertices_.clear();
   ++poses_;
   uploadMeshes();
 }
@@ -194,16 +195,46 @@ void GpuScene::update(const std::vector<std::size_t>& meshes) {
     const Mesh& mesh = scene_->meshes[index];
     const VertexRange range = vertexRange(*scene_, mesh);
     vertices_.upload(range.first * sizeof(Vertex), range.count * sizeof(Vertex), &scene_->vertices[range.first]);
+    movedVertices_.push_back(range);
     for (std::vector<Draw>* draws : {&all_.opaque_, &all_.masked_})
       for (Draw& draw : *draws) {
         if (draw.firstInScene != mesh.firstIndex || mesh.indexCount == 0) continue;
         if (!std::exchange(draw.moves, true)) ++movingMeshes_;
+        draw.hasMoved = true;
         draw.centre = glm::vec3(mesh.bounds.centre());
         draw.halfExtent = glm::vec3(0.5 * mesh.bounds.extent());
         all_.indices_.upload(draw.firstIndex * sizeof(std::uint32_t), mesh.indexCount * sizeof(std::uint32_t),
                              &scene_->indices[mesh.firstIndex]);
       }
   }
+}
+
+void GpuScene::keepPlaces() {
+  if (movingMeshes_ == 0) return;
+  if (before_.id() == 0) {
+    before_ = gl::Buffer("vertices before", vertices_.bytes(), nullptr, gl::Usage::dynamicDraw);
+    withBefore_ = gl::VertexArray("vertices and before", vertices_, sizeof(Vertex), kAttributes, &all_.indices_);
+    const std::array<gl::VertexArray::Attribute, 1> place{{{kPlaceBefore, 3, offsetof(Vertex, position)}}};
+    withBefore_.add(before_, sizeof(Vertex), place);
+    vertices_.copyTo(before_, vertices_.bytes());
+  }
+  for (const VertexRange& range : movedVertices_)
+    vertices_.copyTo(before_, range.count * sizeof(Vertex), range.first * sizeof(Vertex));
+  movedVertices_.clear();
+  for (std::vector<Draw>* draws : {&all_.opaque_, &all_.masked_})
+    for (Draw& draw : *draws) draw.hasMoved = false;
+}
+
+void GpuScene::drawMoved(const SurfacePrograms& programs) const {
+  withBefore_.bind();
+  for (const bool masked : {false, true})
+    for (const Draw& draw : masked ? all_.masked_ : all_.opaque_) {
+      if (!draw.hasMoved) continue;
+      const gl::Program& program = masked ? *programs.masked : *programs.opaque;
+      program.use();
+      bindSurface(program, surfaces_[static_cast<std::size_t>(draw.surface)], false);
+      drawRange(draw);
+    }
 }
 
 void GpuScene::uploadIndices(const std::string& name, const std::vector<std::uint32_t>& indices, Selection& to) const {
@@ -353,7 +384,7 @@ GpuScene::Selection GpuScene::covering(const glm::mat4& clipFromWorld, int size)
 }
 
 std::size_t GpuScene::gpuBytes() const {
-  std::size_t bytes = vertices_.bytes() + all_.gpuBytes();
+  std::size_t bytes = vertices_.bytes() + before_.bytes() + all_.gpuBytes();
   for (const std::optional<gl::Texture>* texture : {&white_, &coats_})
     if (*texture) bytes += (*texture)->bytes();
   for (const gl::Texture& texture : textures_) bytes += texture.bytes();

@@ -5,6 +5,7 @@
 #include "gl/objects.hpp"
 #include "gl/program.hpp"
 #include "scene/features.hpp"
+#include "scene/motion.hpp"
 #include "scene/scene.hpp"
 
 #include <map>
@@ -48,6 +49,7 @@ class GpuScene {
       glm::vec3 centre, halfExtent;
       std::uint32_t firstInScene;  ///< of Scene::indices
       bool moves = false;  ///< has ever
+      bool hasMoved = false;  ///< since keepPlaces()
     };
     gl::Buffer indices_;
     gl::VertexArray vertexArray_;
@@ -79,6 +81,14 @@ class GpuScene {
   /// All its meshes are others, of the same materials.
   void replaceMeshes();
 
+  /// Keeps the places of vertices, as those of the frame before; does nothing before the first update() of a mesh.
+  void keepPlaces();
+  /// Whether a mesh has moved since they were kept.
+  bool hasMoved() const { return before_.id() != 0 && !movedVertices_.empty(); }
+  /// Draws the meshes that have. Attribute kPlaceBefore: a vertex's place then.
+  void drawMoved(const SurfacePrograms& programs) const;
+  static constexpr GLuint kPlaceBefore = 3;
+
   const Scene& scene() const { return *scene_; }
   const SceneFeatures& features() const { return features_; }
   std::size_t gpuBytes() const;
@@ -103,7 +113,9 @@ class GpuScene {
 
   const Scene* scene_;
   SceneFeatures features_;
-  gl::Buffer vertices_;
+  gl::Buffer vertices_, before_;  ///< before_: as kept
+  gl::VertexArray withBefore_;
+  std::vector<VertexRange> movedVertices_;  ///< since then
   Selection all_;
   std::vector<gl::Texture> textures_;
   std::optional<gl::Texture> white_, coats_;

@@ -133,13 +133,15 @@ void Buffer::settle(Barrier barrier) const {
   memoryBarrier(barrier);
 }
 
-void Buffer::copyTo(Buffer& target, std::size_t bytes) const {
-  CHECK(bytes <= bytes_ && bytes <= target.bytes_, "{} bytes of {} into {}", bytes, bytes_, target.bytes_);
+void Buffer::copyTo(Buffer& target, std::size_t bytes, std::size_t offset) const {
+  CHECK(offset + bytes <= bytes_ && offset + bytes <= target.bytes_, "{} bytes at {} of {} into {}", bytes, offset,
+        bytes_, target.bytes_);
   settle(Barrier::bufferUpdate);
   target.settle(Barrier::bufferUpdate);
   glBindBuffer(GL_COPY_READ_BUFFER, id());
   glBindBuffer(GL_COPY_WRITE_BUFFER, target.id());
-  glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, 0, static_cast<GLsizeiptr>(bytes));
+  glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, static_cast<GLintptr>(offset),
+                      static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes));
 }
 
 void Buffer::readBytes(void* data, std::size_t bytes) const {
@@ -491,13 +493,20 @@ VertexArray::VertexArray(const std::string& name) {
 VertexArray::VertexArray(const std::string& name, const Buffer& vertices, std::size_t stride,
                          std::span<const Attribute> attributes, const Buffer* indices)
     : VertexArray(name) {
+  add(vertices, stride, attributes);
+  glBindVertexArray(id());
+  if (indices) glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices->id());
+  glBindVertexArray(0);
+}
+
+void VertexArray::add(const Buffer& vertices, std::size_t stride, std::span<const Attribute> attributes) {
+  glBindVertexArray(id());
   glBindBuffer(GL_ARRAY_BUFFER, vertices.id());
   for (const Attribute& a : attributes) {
     glEnableVertexAttribArray(a.location);
     glVertexAttribPointer(a.location, a.components, GL_FLOAT, GL_FALSE, static_cast<GLsizei>(stride),
                           reinterpret_cast<const void*>(a.offset));
   }
-  if (indices) glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices->id());
   glBindVertexArray(0);
 }
 

@@ -71,8 +71,8 @@ class Buffer {
   void clear(GLuint value = 0);
   void bindUniform(GLuint index) const;
   void bindStorage(GLuint index) const;
-  /// Copies this buffer's first bytes into the beginning of `target`.
-  void copyTo(Buffer& target, std::size_t bytes) const;
+  /// Copies bytes of this buffer to the same place in `target`.
+  void copyTo(Buffer& target, std::size_t bytes, std::size_t offset = 0) const;
   /// Issues a barrier if shaders may have written this buffer: bufferUpdate before the API changes or reads it.
   void settle(Barrier barrier) const;
   template <class T>
@@ -261,6 +261,8 @@ class VertexArray {
   explicit VertexArray(const std::string& name);
   VertexArray(const std::string& name, const Buffer& vertices, std::size_t stride,
               std::span<const Attribute> attributes, const Buffer* indices);
+  /// Of another buffer.
+  void add(const Buffer& vertices, std::size_t stride, std::span<const Attribute> attributes);
   VertexArray(VertexArray&&) noexcept = default;
   VertexArray& operator=(VertexArray&&) noexcept = default;
 

@@ -191,7 +191,7 @@ bool Renderer::follow(const gl::Context& context, gl::ProgramLibrary& programs, 
   view_.reset();
   surfacesAreNew_ = surfacesAreNew_ || !change.meshes.empty() || change.views;
   if (movesCamerasAlone) return true;
-  sceneMoves_ = true;
+  lightMoves_ = lightMoves_ || change.anyLight() || change.materials || change.media || geometry_;
   if (picture_) return picture_->follow(change);
   if (moved_) {
     Scene next = movedTo(scene, origin_);
@@ -200,6 +200,7 @@ bool Renderer::follow(const gl::Context& context, gl::ProgramLibrary& programs, 
   }
   if (geometry_) gpuScene_->replaceMeshes();
   else gpuScene_->update(change.meshes);
+  if (gpuScene_->movingMeshes() > 0 && accumulates() && !objectMotion_) objectMotion_.emplace(programs, features_);
   traced_.update(change.meshes);
   shadowRays_.reset();
   if (!change.meshes.empty() || change.lamps) lampShadowsMade_ = false;
@@ -397,6 +398,7 @@ void Renderer::allocateTargets() {
   multisampled_.reset();
   motionSamples_ = {};
   antialiasing_.resize(settings_.size);
+  if (objectMotion_) objectMotion_->resize();
   view_.reset();
   shown_ = &radiance_;
 }
@@ -608,7 +610,7 @@ void Renderer::render(const Camera& camera, const Camera& volumeCamera) {
 // Frames with all their light are added up in order; until then, and while the view moves, the running mean is shown.
 void Renderer::showAccumulated(int sample, bool moves) {
   const gl::TimeQuery::Scope stage(timer_, "antialiasing");
-  const bool sceneMoves = std::exchange(sceneMoves_, false) || lightChanges();
+  const bool lightMoves = std::exchange(lightMoves_, false) || lightChanges();
   const bool hasAllLight = !technique_ || technique_->isSettled();
   if (!hasAllLight) antialiasing_.clear();
   else if (sample == antialiasing_.count()) antialiasing_.add(radiance_, noAttributes_);
@@ -619,9 +621,14 @@ void Renderer::showAccumulated(int sample, bool moves) {
     return;
   }
   const FrameView centred = viewOf(view_->camera, view_->volumeCamera);
-  antialiasing_.accumulate({radiance_, depth_, centred.clip, centred.camera.position,
-                            samples_[static_cast<std::size_t>(sample)], sceneMoves},
-                           moves, settings_.reprojection, settings_.pixelSamples, noAttributes_);
+  Antialiasing::Frame frame{
+      radiance_, depth_, centred.clip, centred.camera.position, samples_[static_cast<std::size_t>(sample)], lightMoves};
+  if (moves && settings_.reprojection && objectMotion_ && gpuScene_->hasMoved()) {
+    objectMotion_->draw(*gpuScene_, depth_, centred.clip, antialiasing_.clipBefore());
+    frame.objectMotion = &objectMotion_->texture();
+  }
+  antialiasing_.accumulate(frame, moves, settings_.reprojection, settings_.pixelSamples, noAttributes_);
+  if (settings_.reprojection) gpuScene_->keepPlaces();
   shown_ = &antialiasing_.shown();
 }
 
@@ -741,7 +748,8 @@ Bitmap Renderer::readDisplay() const { return gl::readBitmap(display_, settings_
 
 std::size_t Renderer::gpuBytes() const {
   std::size_t bytes = frameConstants_.bytes() + radiance_.bytes() + depth_.bytes() + display_.bytes() +
-                      antialiasing_.gpuBytes() + (multisampled_ ? multisampled_->bytes() : 0);
+                      antialiasing_.gpuBytes() + (objectMotion_ ? objectMotion_->gpuBytes() : 0) +
+                      (multisampled_ ? multisampled_->bytes() : 0);
   if (gpuScene_) bytes += gpuScene_->gpuBytes();
   if (sunShadow_) bytes += sunShadow_->gpuBytes();
   if (localLights_) bytes += localLights_->gpuBytes();

@@ -11,6 +11,7 @@
 #include "forward/gpu_scene.hpp"
 #include "forward/local_lights.hpp"
 #include "forward/motion_samples.hpp"
+#include "forward/object_motion.hpp"
 #include "forward/sun_frustum.hpp"
 #include "forward/sun_shadow.hpp"
 #include "frame/technique.hpp"
@@ -200,11 +201,12 @@ class Renderer {
   std::optional<View> view_;
   std::vector<glm::dvec2> samples_;  ///< offsets from pixels' centres
   int nextSample_ = 0;  ///< while light or the view changes
-  bool sceneMoves_ = false;  ///< since the last frame
+  bool lightMoves_ = false;  ///< since the last frame; or surfaces whose motion is not known
   bool moves_ = false;  ///< the view, in this frame
   MotionSamples motionSamples_;
   gl::SplitTimer sampleTimer_;  ///< of a frame in motion: its first sample, all others
   Antialiasing antialiasing_;
+  std::optional<ObjectMotion> objectMotion_;  ///< where meshes have moved in the window
 };
 
 }  // namespace lucerna

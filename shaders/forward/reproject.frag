@@ -1,14 +1,17 @@
 // Adds a frame to the running mean of those before it (engine/forward/antialiasing.hpp).
 // In motion each pixel's surface, the nearest of the pixel's neighbourhood so that edges move with what is before them,
-// is looked for where the frame before showed it. The mean found there is limited to the new frame's own range around
-// the pixel: mean and kDeviations standard deviations of 3x3 pixels [Salvi2016]. Not that of path traced frames: nine
-// noisy pixels do not know the range, and may all be black. All in linear radiance, as a camera adds up light: a mean
-// of colours compressed by brightness is too dark at bright edges.
+// is looked for where the frame before showed it; an object that moves, by its own motion. The mean found there is
+// limited to the new frame's own range around the pixel: mean and kDeviations standard deviations of 3x3 pixels
+// [Salvi2016]. Not that of path traced frames: nine noisy pixels do not know the range, and may all be black. All in
+// linear radiance, as a camera adds up light: a mean of colours compressed by brightness is too dark at bright edges.
 #include "lib/clamped_int.glsl"
 layout(binding = 0) uniform sampler2D radianceTexture;
 layout(binding = 1) uniform sampler2D depthTexture;
 layout(binding = 2) uniform sampler2D beforeTexture;       // rgb; a: frames in it
 layout(binding = 3) uniform sampler2D distanceBeforeTexture;
+#if OBJECTS_MOVE
+layout(binding = 4) uniform sampler2D objectMotion;  // engine/forward/object_motion.hpp
+#endif
 uniform mat4 beforeFromClip, beforeFromFar;  // from the frame's clip space; far: of what is infinitely far
 uniform vec4 inverseDistance;                // times a place in clip space: 1 over its distance along the view
 uniform vec2 offset;                         // of the frame's samples from pixels' centres, in pixels
@@ -49,6 +52,7 @@ void main() {
 
   // The nearest surface around, and the range of distances and colours.
   vec4 nearest = vec4(0.0, 0.0, 1.0, 1.0);
+  ivec2 nearestPixel = pixel;
   float inverseLeast = 0.0, inverseMost = kInfinite;
   vec3 sum = vec3(0.0), squares = vec3(0.0);
   for (int y = -1; y <= 1; ++y)
@@ -60,6 +64,7 @@ void main() {
       if (inverse > inverseLeast) {
         inverseLeast = inverse;
         nearest = clip;
+        nearestPixel = place;
       }
       inverseMost = min(inverseMost, inverse);
       vec3 c = texelFetch(radianceTexture, place, 0).rgb;
@@ -80,6 +85,13 @@ void main() {
 
   vec4 place = isFar ? beforeFromFar * nearest : beforeFromClip * nearest;
   vec2 uv = gl_FragCoord.xy / size + 0.5 * (place.xy / place.w - nearest.xy) - offset / size;
+#if OBJECTS_MOVE
+  vec4 motion = texelFetch(objectMotion, nearestPixel, 0);
+  if (!isFar && motion.w > 0.0) {
+    uv = gl_FragCoord.xy / size + 0.5 * motion.xy;
+    place.w = motion.z;
+  }
+#endif
   if (!(place.w > 0.0) || any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return;
   ivec2 pixelBefore = clampedInt(uv * size, ivec2(0), last);
   // Hidden before by something nearer, by more than the surface itself varies around the pixel?

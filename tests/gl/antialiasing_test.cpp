@@ -10,10 +10,12 @@
 #include "irradiance_cache/settings.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "render/renderer.hpp"
+#include "scene/motion.hpp"
 #include "support/gl_fixture.hpp"
 #include "support/media_scenes.hpp"
 #include "support/small_scenes.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,6 +23,7 @@
 #include <cstring>
 #include <limits>
 #include <random>
+#include <string>
 #include <vector>
 
 namespace lucerna {
@@ -212,36 +215,48 @@ TEST_F(AntialiasingGl, AViewAtRestEndsAtTheSameBitsOnEveryRun) {
   EXPECT_EQ(std::memcmp(first.pixels.data(), third.pixels.data(), first.pixels.size() * sizeof first.pixels[0]), 0);
 }
 
-// An edge that moves by a fraction of a pixel in each frame: its share of a pixel is that of the present place.
+// An edge that moves by a fraction of a pixel in each frame, by itself or past the camera: its share of a pixel is that
+// of the present place.
 TEST_F(AntialiasingGl, InMotionAnEdgeIsSmoothAndWhereItIs) {
-  const EdgeScene scene(0.3, 0.25f);
-  for (const bool orthographic : {true, false}) {
-    const auto error = [&](bool reprojection, int samples) {
-      RenderSettings settings = settingsFor(16);
-      settings.reprojection = reprojection;
-      settings.motionSamples = samples;
-      Renderer renderer(context(), programs(), scene, settings);
-      double squares = 0.0;
-      constexpr int kFrames = 40;
-      for (int frame = 0; frame < kFrames; ++frame) {
-        const double at = -0.13 * frame;
-        renderer.render(EdgeScene::view(at, orthographic));
-        if (frame < 12) continue;
-        const Image image = renderer.readRadiance();
-        for (int x = 0; x < kPicture; ++x) {
-          const double right = 0.25 + 0.75 * shareRightOf(PixelFilter::box, 0.3 - at - (x + 0.5 - 0.5 * kPicture));
-          squares += std::pow(image.at(x, 5).x - right, 2.0) / kFrames;
+  const EdgeScene rest(0.3, 0.25f);
+  for (const bool orthographic : {true, false})
+    for (const bool movesItself : {false, true}) {
+      const auto error = [&](bool reprojection, int samples) {
+        RenderSettings settings = settingsFor(16);
+        settings.reprojection = reprojection;
+        settings.motionSamples = samples;
+        EdgeScene scene = rest;
+        Renderer renderer(context(), programs(), scene, settings);
+        double squares = 0.0;
+        constexpr int kFrames = 40;
+        for (int frame = 0; frame < kFrames; ++frame) {
+          const double gone = 0.13 * frame;
+          if (movesItself) {
+            for (std::size_t i = 0; i < scene.vertices.size(); ++i)
+              scene.vertices[i].position.x = rest.vertices[i].position.x + static_cast<float>(gone);
+            SceneChange change;
+            change.meshes = {0};
+            EXPECT_TRUE(renderer.follow(context(), programs(), scene, change));
+          }
+          renderer.render(EdgeScene::view(movesItself ? 0.0 : -gone, orthographic));
+          if (frame < 12) continue;
+          const Image image = renderer.readRadiance();
+          for (int x = 0; x < kPicture; ++x) {
+            const double right = 0.25 + 0.75 * shareRightOf(PixelFilter::box, 0.3 + gone - (x + 0.5 - 0.5 * kPicture));
+            squares += std::pow(image.at(x, 5).x - right, 2.0) / kFrames;
+          }
         }
-      }
-      return std::sqrt(squares);
-    };
-    const double with = error(true, 1), without = error(false, 1), four = error(true, 4), fourAlone = error(false, 4);
-    std::printf("edge in motion, %s: error %.3f, each frame alone %.3f; with four samples %.3f and %.3f\n",
-                orthographic ? "orthographic" : "perspective", with, without, four, fourAlone);
-    EXPECT_LT(with, 0.4 * without) << orthographic;
-    EXPECT_LT(four, 0.8 * with) << orthographic;
-    EXPECT_LT(fourAlone, 0.55 * without) << orthographic;
-  }
+        return std::sqrt(squares);
+      };
+      const double with = error(true, 1), without = error(false, 1), four = error(true, 4), fourAlone = error(false, 4);
+      const std::string name = fmt::format("{}, {}", orthographic ? "orthographic" : "perspective",
+                                           movesItself ? "by itself" : "past the camera");
+      std::printf("edge in motion, %s: error %.3f, each frame alone %.3f; with four samples %.3f and %.3f\n",
+                  name.c_str(), with, without, four, fourAlone);
+      EXPECT_LT(with, 0.4 * without) << name;
+      EXPECT_LT(four, 0.8 * with) << name;
+      EXPECT_LT(fourAlone, 0.55 * without) << name;
+    }
 }
 
 // By timestamps, as on a GPU: the number follows what the first sample costs beside the others.
