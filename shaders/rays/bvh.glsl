@@ -34,9 +34,10 @@ struct Hit {
   vec2 barycentrics;  // weights of the second and third corner
 };
 
-// A ray prepared for traversal. For boxes: the inverse direction, with components near zero replaced by 2^-60 of the
-// longest so that nothing is infinite, and the direction's octant. For triangles: the ray's own space, in which it runs
-// along z from the origin [Woop2013]: axes permuted so that z is the longest, then sheared.
+// A ray prepared for traversal. For boxes: the inverse of the direction over a power of two, which makes its longest
+// component 0.5 to 1, with components near zero replaced by 2^-60 of the longest, so that no distance is infinite up to
+// coordinates of 2^64; and the direction's octant. For triangles: the ray's own space, in which it runs along z from
+// the origin [Woop2013]: axes permuted so that z is the longest, then sheared.
 struct BvhRay {
   vec3 origin;
   vec3 inverse;
@@ -48,19 +49,29 @@ struct BvhRay {
 
 vec3 bvhTurn(vec3 v, bvec2 turn) { return turn.x ? v.yzx : turn.y ? v.zxy : v; }
 
+// The power of two: distances to boxes are t times that.
+float bvhBoxUnit(BvhRay r) { return inversePowerOfTwo(abs(r.shear.z)); }
+
 BvhRay bvhPrepare(Ray ray) {
   vec3 d = ray.direction, a = abs(d);
-  float least = max(a.x, max(a.y, a.z)) * 8.67361738e-19;
   BvhRay r;
   r.origin = ray.origin;
   r.negative = lessThan(d, vec3(0.0));
-  r.inverse = 1.0 / mix(d, mix(vec3(least), vec3(-least), r.negative), lessThan(a, vec3(least)));
   r.octant = 7u - ((r.negative.x ? 4u : 0u) | (r.negative.y ? 2u : 0u) | (r.negative.z ? 1u : 0u));
   r.turn = bvec2(a.x > a.y && a.x > a.z, a.y > a.z);
   vec3 p = bvhTurn(d, r.turn);
   r.shear = vec3(p.xy / p.z, 1.0 / p.z);
+  d *= inversePowerOfTwo(bvhBoxUnit(r));
+  float least = largestOf(d) * 8.67361738e-19;
+  r.inverse = 1.0 / mix(d, mix(vec3(least), vec3(-least), r.negative), lessThan(abs(d), vec3(least)));
   return r;
 }
+
+// The greater and the less of two numbers that are not NaN; of two negative ones the other, so that boxes only grow.
+// As integers: llvmpipe's max of floats takes three instructions, since it drops NaN.
+float bvhGreater(float a, float b) { return intBitsToFloat(max(floatBitsToInt(a), floatBitsToInt(b))); }
+float bvhLess(float a, float b) { return intBitsToFloat(min(floatBitsToInt(a), floatBitsToInt(b))); }
+float bvhLargest(vec3 v) { return bvhGreater(abs(v.x), bvhGreater(abs(v.y), abs(v.z))); }
 
 // Twice the area of (0, a, b) in the plane. Each product is rounded, but rounding is monotonic, so the sign is right or
 // the area is zero. Neighbours see a shared edge with the same numbers, and zero counts as inside for both, so nothing
@@ -96,9 +107,10 @@ bool bvhHitTriangle(BvhRay r, vec3 a, vec3 b, vec3 c, uint id, vec2 others, floa
   float area = u + v + w;
   float scale = 1.0 / area;
   barycentrics = vec2(v, w) * scale;
-  vec3 n = bvhPlane(id, others, r.turn), largest = max(abs(a), max(abs(b), abs(c)));
+  vec3 n = bvhPlane(id, others, r.turn);
   float along = (dot(n.xy, r.shear.xy) + n.z) / r.shear.z, distance = dot(n, pa),
-        gap = slack < 0.0 ? 0.0 : kLampGap * max(slack, max(largest.x, max(largest.y, largest.z)));
+        largest = bvhGreater(bvhLargest(a), bvhGreater(bvhLargest(b), bvhLargest(c))),
+        gap = slack < 0.0 ? 0.0 : kLampGap * bvhGreater(slack, largest);
   // a plane seen edge-on: within the corners
   vec3 z = vec3(pa.z, pb.z, pc.z) * r.shear.z;
   t = clamp(distance / along, min(z.x, min(z.y, z.z)), max(z.x, max(z.y, z.z)));
@@ -132,7 +144,8 @@ uint bvhHitFour(ivec3 near, ivec3 far, vec3 scale, vec3 nearBase, vec3 farBase, 
   for (int k = 0; k < 4; ++k) {
     int shift = 8 * k;
     vec3 a = vec3((near >> shift) & 255) * scale + nearBase, b = vec3((far >> shift) & 255) * scale + farBase;
-    float enter = max(max(a.x, a.y), max(a.z, tMin)), leave = min(min(b.x, b.y), min(b.z, tMax));
+    float enter = bvhGreater(bvhGreater(a.x, a.y), bvhGreater(a.z, tMin)),
+          leave = bvhLess(bvhLess(b.x, b.y), bvhLess(b.z, tMax));
     uint bits = ((meta >> (shift + 5)) & 7u) << ((turned >> shift) & 31u);
     hits |= enter <= leave ? bits : 0u;
   }
@@ -151,8 +164,11 @@ struct BvhTraversal {
   // children to visit: x the first child of their parent; y bits 24..31 the remaining ones, in octant order, bits 0..7
   // those that are nodes
   uvec2 siblings;
-  int top;         // of the stack; below zero: the ray is done
+  int top;         // of the stack
   uint leaves, firstTriangle;  // triangles of the node to test, a bit each, counted from its first
+#if !SHARED_STACK
+  uint later, firstLater;      // the same of the next node, to test after those
+#endif
   int visited, tested;         // nodes and triangles, for statistics
 };
 
@@ -165,7 +181,6 @@ shared uint bvhStackX[SHARED_STACK * kBvhLanes], bvhStackY[SHARED_STACK * kBvhLa
 uint bvhStackPlace(int entry) { return uint(entry) * kBvhLanes + gl_LocalInvocationIndex; }
 #else
 uint bvhStackX[BVH_MAX_DEPTH], bvhStackY[BVH_MAX_DEPTH];
-int bvhStackPlace(int entry) { return entry; }
 #endif
 
 // Loop iterations of this invocation so far, for kernels that must stop before a driver leaves all loops (llvmpipe does
@@ -188,7 +203,11 @@ bool isRay(Ray ray) {
 BvhTraversal beginRay(Ray ray, uint skipTriangle) {
   // The root is treated as the only child of a virtual parent, in the slot that is visited first.
   return BvhTraversal(bvhPrepare(ray), ray.tMin, 3e38, largestOf(ray.origin), skipTriangle,
-                      Hit(ray.tMax, kNoHit, vec2(0.0)), uvec2(0u, 0x80000000u), isRay(ray) ? 0 : -1, 0u, 0u, 0, 0);
+                      Hit(ray.tMax, kNoHit, vec2(0.0)), uvec2(0u, isRay(ray) ? 0x80000000u : 0u), 0, 0u, 0u,
+#if !SHARED_STACK
+                      0u, 0u,
+#endif
+                      0, 0);
 }
 
 // A shadow ray, which ends on a lamp at tMax.
@@ -198,85 +217,133 @@ BvhTraversal beginRayToLamp(Ray ray, uint skipTriangle) {
   return s;
 }
 
-bool isDone(BvhTraversal s) { return s.top < 0; }
+bool isDone(BvhTraversal s) { return s.leaves == 0u && s.siblings.y <= 0x00ffffffu; }
 
-void bvhVisitNode(inout BvhTraversal s) {
-  ++s.visited;
+// The sibling to visit next, as the first of its texels. rest: those that remain.
+int bvhNextNode(BvhTraversal s, out uint rest) {
   int place = bvhHighest(s.siblings.y >> 24);
-  s.siblings.y &= ~(0x01000000u << place);
-  int node = BVH_NODE_TEXELS *
-             int(s.siblings.x + uint(bitCount(s.siblings.y & ~(0xffffffffu << (uint(place) ^ s.ray.octant)) & 255u)));
-  if (s.siblings.y > 0x00ffffffu) {
-    bvhStackX[bvhStackPlace(s.top)] = s.siblings.x;
-    bvhStackY[bvhStackPlace(s.top)] = s.siblings.y;
-    ++s.top;
-  }
-  uvec4 n0 = texelFetch(bvhNodes, node), n1 = texelFetch(bvhNodes, node + 1), n2 = texelFetch(bvhNodes, node + 2),
-        n3 = texelFetch(bvhNodes, node + 3), n4 = texelFetch(bvhNodes, node + 4);
+  rest = s.siblings.y & ~(0x01000000u << place);
+  return BVH_NODE_TEXELS *
+         int(s.siblings.x + uint(bitCount(rest & ~(0xffffffffu << (uint(place) ^ s.ray.octant)) & 255u)));
+}
+
+// The children of a node whose boxes the ray enters: bits 24..31 nodes in octant order, 0..23 triangles.
+uint bvhHitBoxes(BvhTraversal s, uvec4 n0, uvec4 n1, uvec4 n2, uvec4 n3, uvec4 n4) {
   vec3 scale = uintBitsToFloat(uvec3(n0.w << 23, n0.w << 15, n0.w << 7) & 0x7f800000u) * s.ray.inverse;
   vec3 base = (uintBitsToFloat(n0.xyz) - s.ray.origin) * s.ray.inverse;
   // 2^-21: the rounding of this, of the next lines and of the triangle test
   vec3 error = (abs(base) + abs(scale) * 256.0) * 4.76837158e-7;
+  float unit = bvhBoxUnit(s.ray), tMin = s.tMin * unit, tMax = s.hit.t * unit;
   ivec3 low03 = ivec3(n2.x, n2.z, n3.x), low47 = ivec3(n2.y, n2.w, n3.y), high03 = ivec3(n3.z, n4.x, n4.z),
         high47 = ivec3(n3.w, n4.y, n4.w);
   uint hits = bvhHitFour(bvhChoose(low03, high03, s.ray.negative), bvhChoose(high03, low03, s.ray.negative), scale,
-                         base - error, base + error, s.tMin, s.hit.t, n1.z, s.ray.octant);
+                         base - error, base + error, tMin, tMax, n1.z, s.ray.octant);
 #if SHARED_STACK
   // Adds 0: eight inner nodes leave no child for triangles. It keeps compilers from unpacking all 48 bytes at once.
   int none = hits == 0xffffffffu ? 1 : 0;
   low47 += none;
   high47 += none;
 #endif
-  hits |= bvhHitFour(bvhChoose(low47, high47, s.ray.negative), bvhChoose(high47, low47, s.ray.negative), scale,
-                     base - error, base + error, s.tMin, s.hit.t, n1.w, s.ray.octant);
-  s.siblings = uvec2(n1.x, (hits & 0xff000000u) | (n0.w >> 24));
-  s.leaves = hits & 0x00ffffffu;
-  s.firstTriangle = n1.y;
+  return hits | bvhHitFour(bvhChoose(low47, high47, s.ray.negative), bvhChoose(high47, low47, s.ray.negative), scale,
+                           base - error, base + error, tMin, tMax, n1.w, s.ray.octant);
 }
 
-// Tests the next triangle of the node. any: the first hit ends the ray.
-void bvhTestTriangle(inout BvhTraversal s, bool any) {
+// Tests a triangle, the texels a, b and c.
+void bvhTestTriangle(inout BvhTraversal s, int triangle, uvec4 a, vec4 b, vec4 c) {
   ++s.tested;
-  int k = bvhHighest(s.leaves);
-  // llvmpipe reads for lanes that wait too: for those texel 0, which is in its caches. min and not a branch, which
-  // compilers leave out where such lanes do not come.
-  int triangle = int(min(s.leaves, 1u)) * (1 + BVH_TRIANGLE_TEXELS * (int(s.firstTriangle) + k));
-  s.leaves &= ~(1u << k);
-  uvec4 a = texelFetch(bvhTriangles, triangle);
-  vec4 b = uintBitsToFloat(texelFetch(bvhTriangles, triangle + 1)),
-       c = uintBitsToFloat(texelFetch(bvhTriangles, triangle + 2));
   float t;
   vec2 barycentrics;
   uint id = a.w & BVH_TRIANGLE_ID_MASK;
   if (bvhHitTriangle(s.ray, uintBitsToFloat(a.xyz), b.xyz, c.xyz, a.w, vec2(b.w, c.w), s.tMin, s.hit.t, s.lampEnd,
                      s.slack, t, barycentrics) &&
-      id != s.skipTriangle && !bvhMissesMask(a.w, barycentrics)) {
+      id != s.skipTriangle && !bvhMissesMask(a.w, barycentrics))
     s.hit = Hit(t, uint(triangle), barycentrics);
-    if (any) s.leaves = 0u;
-  }
 }
 
-// One step. On GPUs: visits a node and tests its triangles. On software renderers: tests one triangle, after visiting
-// a node where none was left. There all lanes do what one of them does, so a lane visits its next node while others
-// test the rest of their triangles. any: stop at the first hit.
+#if SHARED_STACK
+// One step: visits a node and tests its triangles. any: stop at the first hit.
 void advanceRay(inout BvhTraversal s, bool any) {
   ++loopIterations;
-#if SHARED_STACK
-  bvhVisitNode(s);
+  ++s.visited;
+  uint rest;
+  int node = bvhNextNode(s, rest);
+  if (rest > 0x00ffffffu) {
+    bvhStackX[bvhStackPlace(s.top)] = s.siblings.x;
+    bvhStackY[bvhStackPlace(s.top)] = rest;
+    ++s.top;
+  }
+  uvec4 n0 = texelFetch(bvhNodes, node), n1 = texelFetch(bvhNodes, node + 1), n2 = texelFetch(bvhNodes, node + 2),
+        n3 = texelFetch(bvhNodes, node + 3), n4 = texelFetch(bvhNodes, node + 4);
+  uint hits = bvhHitBoxes(s, n0, n1, n2, n3, n4);
+  s.siblings = uvec2(n1.x, (hits & 0xff000000u) | (n0.w >> 24));
+  s.leaves = hits & 0x00ffffffu;
+  s.firstTriangle = n1.y;
   while (s.leaves != 0u) {  // ends: each iteration clears the highest of 24 bits
     ++loopIterations;
-    bvhTestTriangle(s, any);
+    int k = bvhHighest(s.leaves), triangle = 1 + BVH_TRIANGLE_TEXELS * (int(s.firstTriangle) + k);
+    s.leaves &= ~(1u << k);
+    bvhTestTriangle(s, triangle, texelFetch(bvhTriangles, triangle),
+                    uintBitsToFloat(texelFetch(bvhTriangles, triangle + 1)),
+                    uintBitsToFloat(texelFetch(bvhTriangles, triangle + 2)));
+    if (any && s.hit.triangle != kNoHit) s.leaves = 0u;
   }
-#else
-  if (s.leaves == 0u) bvhVisitNode(s);
-  if (s.leaves != 0u) bvhTestTriangle(s, any);
-#endif
-  bool ended = any && s.hit.triangle != kNoHit;
-  if (s.leaves == 0u && (s.siblings.y <= 0x00ffffffu || ended)) {
-    s.top = ended ? -1 : s.top - 1;
-    if (s.top >= 0) s.siblings = uvec2(bvhStackX[bvhStackPlace(s.top)], bvhStackY[bvhStackPlace(s.top)]);
+  if (any && s.hit.triangle != kNoHit) {
+    s.siblings.y = 0u;
+  } else if (s.siblings.y <= 0x00ffffffu && s.top > 0) {
+    --s.top;
+    s.siblings = uvec2(bvhStackX[bvhStackPlace(s.top)], bvhStackY[bvhStackPlace(s.top)]);
   }
 }
+#else
+// The same for software renderers, where all lanes do what one of them does: a step visits a node and tests a triangle
+// of an earlier one. Both are read first, so that the processor waits for memory once. Lanes that wait read too: the
+// first texel, which is in the caches.
+void advanceRay(inout BvhTraversal s, bool any) {
+  ++loopIterations;
+  bool tests = s.leaves != 0u, isMore = s.siblings.y > 0x00ffffffu, visits = isMore && s.later == 0u;
+  int k = bvhHighest(s.leaves), triangle = tests ? 1 + BVH_TRIANGLE_TEXELS * (int(s.firstTriangle) + k) : 0;
+  uint rest;
+  int next = bvhNextNode(s, rest), node = isMore ? next : 0;
+  uvec4 a = texelFetch(bvhTriangles, triangle);
+  vec4 b = uintBitsToFloat(texelFetch(bvhTriangles, triangle + 1)),
+       c = uintBitsToFloat(texelFetch(bvhTriangles, triangle + 2));
+  uvec4 n0 = texelFetch(bvhNodes, node), n1 = texelFetch(bvhNodes, node + 1), n2 = texelFetch(bvhNodes, node + 2),
+        n3 = texelFetch(bvhNodes, node + 3), n4 = texelFetch(bvhNodes, node + 4);
+
+  // The node: its children that are nodes are the next siblings, else those that remain, else those on the stack.
+  if (visits) {
+    ++s.visited;
+    uint hits = bvhHitBoxes(s, n0, n1, n2, n3, n4);
+    bool descends = hits > 0x00ffffffu, remain = rest > 0x00ffffffu;
+    if (descends && remain) {
+      bvhStackX[s.top] = s.siblings.x;
+      bvhStackY[s.top] = rest;
+      ++s.top;
+    }
+    s.siblings.y = rest;
+    if (descends) {
+      s.siblings = uvec2(n1.x, (hits & 0xff000000u) | (n0.w >> 24));
+    } else if (!remain && s.top > 0) {
+      --s.top;
+      s.siblings = uvec2(bvhStackX[s.top], bvhStackY[s.top]);
+    }
+    s.later = hits & 0x00ffffffu;
+    s.firstLater = n1.y;
+  }
+
+  // The triangle, and which is the next.
+  if (tests) {
+    s.leaves &= ~(1u << k);
+    bvhTestTriangle(s, triangle, a, b, c);
+  }
+  if (s.leaves == 0u) {
+    s.leaves = s.later;
+    s.firstTriangle = s.firstLater;
+    s.later = 0u;
+  }
+  if (any && s.hit.triangle != kNoHit) s.leaves = s.siblings.y = 0u;
+}
+#endif
 
 // The hit of a finished ray. Float edge functions decide exactly whether a triangle is hit, but in a sliver their
 // ratios locate the hit poorly. So distance and barycentrics are recomputed from the plane and the areas in it, in

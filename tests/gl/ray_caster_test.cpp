@@ -183,6 +183,45 @@ TEST_F(RayCasterOnGl, KeepsIntervalsSkipsMasksAndAnswersAny) {
   EXPECT_NEAR(hit.barycentrics.y, 0.25f, 1e-6f);
 }
 
+// Distances are compared as integers, which order no NaN, and negative ones the other way round.
+TEST_F(RayCasterOnGl, DirectionsHaveAnyLengthAndIntervalsBeginBehindTheOrigin) {
+  const Scene scene = triangleSoup(300, 0.4, glm::dvec3(0.0), 6);
+  const RayScene rayScene(scene, capabilities());
+  for (const float tMin : {0.0f, -0.7f, -3.0f}) {
+    std::vector<GlRay> rays = randomRays(4096, -rayScene.origin(), glm::dvec3(0.5), 7);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      rays[i].tMin = tMin;
+      if (i % 2) rays[i].direction[static_cast<glm::length_t>(i / 2 % 3)] = 0.0f;  // in the plane of two axes
+    }
+    const std::vector<GlHit> hits = trace(library(), rayScene, rays);
+    std::vector<GlHit> expected;
+    for (const GlRay& ray : rays) {
+      const Reference first = bruteForce(scene, rayScene.origin(), ray);
+      expected.push_back({static_cast<float>(first.t), first.triangle, glm::vec2(0.0f)});
+    }
+    std::size_t wrong = 0, met = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      met += hits[i].triangle != kNoHit;
+      wrong += hits[i].triangle != expected[i].triangle;
+    }
+    EXPECT_GT(met, 2000u) << tMin;
+    EXPECT_LE(wrong, 2u) << tMin;  // at edges
+    for (const int exponent : {-110, -70, -30, 30, 70, 110}) {
+      std::vector<GlRay> other = rays;
+      for (GlRay& ray : other) {
+        ray.direction *= std::ldexp(1.0f, exponent);
+        ray.tMin *= std::ldexp(1.0f, -exponent);
+      }
+      const std::vector<GlHit> same = trace(library(), rayScene, other);
+      wrong = 0;
+      for (std::size_t i = 0; i < rays.size(); ++i)
+        wrong += same[i].triangle != hits[i].triangle ||
+                 (hits[i].triangle != kNoHit && same[i].t != std::ldexp(hits[i].t, -exponent));
+      EXPECT_EQ(wrong, 0u) << tMin << ", 2^" << exponent;
+    }
+  }
+}
+
 TEST_F(RayCasterOnGl, TracesNothingOneAndTheDegenerate) {
   const std::vector<GlRay> rays = randomRays(256, glm::dvec3(0.0), glm::dvec3(1.0), 3);
   SceneBuilder empty;
