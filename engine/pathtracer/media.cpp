@@ -104,7 +104,7 @@ Lies liesIn(const std::vector<BoundaryTriangle>& inner, const std::vector<Bounda
   Lies lies = Lies::apart;
   for (std::size_t i = 0; i < inner.size(); i += stride) {
     const glm::dvec3 a(inner[i].a), ab = glm::dvec3(inner[i].b) - a, ac = glm::dvec3(inner[i].c) - a,
-                     normal = glm::cross(ab, ac);
+                                    normal = glm::cross(ab, ac);
     if (!(glm::length(normal) > 0.0)) continue;
     int inside = 0, all = 0;
     for (int u = 0; u <= kSteps; ++u)
@@ -233,18 +233,26 @@ PackedMedia packMedia(const std::vector<Medium>& media, const glm::dvec3& origin
 void checkOuterMedium(const Scene& scene, const SceneFeatures& features) {
   if (scene.cameraMedium < 0) return;
   const Medium& medium = scene.media[static_cast<std::size_t>(scene.cameraMedium)];
+  if (medium.grid) return;
+  const std::string end = fmt::format(
+      "give it an end by a body of a material with \"bsdf\": \"none\", \"interior\": \"{}\" in place of "
+      "\"cameraMedium\"",
+      medium.name);
   const glm::vec3 extinction = medium.scattering + medium.absorption;
-  const bool isBlack = !medium.grid && std::min({extinction.x, extinction.y, extinction.z}) > 0.0f;
-  const bool isLitFromAfar = features.directionalLight || features.environment || features.background;
-  if (!isBlack || !isLitFromAfar) return;
-  const std::string why = fmt::format(
-      "medium {} has no end, so no light of the sun and the sky gets through it; give it one by a body of a material "
-      "with \"bsdf\": \"none\", \"interior\": \"{}\" in place of \"cameraMedium\"",
-      medium.name, medium.name);
-  const bool isLitWithin =
-      features.emission || features.spotLights || features.pointLights || features.volumeEmission;
-  if (!isLitWithin) throwBadInput("{}: the picture would be black: {}", scene.name, why);
-  logWarning("{}", why);
+  const bool isBlack = std::min({extinction.x, extinction.y, extinction.z}) > 0.0f;
+  const bool isLitWithin = features.emission || features.spotLights || features.pointLights || features.volumeEmission;
+  if (isBlack && (features.directionalLight || features.environment || features.background)) {
+    const std::string why =
+        fmt::format("medium {} has no end, so no light of the sun and the sky gets through it; {}", medium.name, end);
+    if (!isLitWithin) throwBadInput("{}: the picture would be black: {}", scene.name, why);
+    logWarning("{}", why);
+  }
+  for (int c = 0; c < 3; ++c)
+    if (isLitWithin && medium.scattering[c] > 0.0f && medium.absorption[c] == 0.0f) {
+      logWarning("medium {} has no end and absorbs nothing, so paths in it end after a million scatterings; {}",
+                 medium.name, end);
+      return;
+    }
 }
 
 PackedBoundaries rankBoundaries(const Scene& scene, bool diffuseOnly) {
@@ -299,8 +307,7 @@ PackedBoundaries rankBoundaries(const Scene& scene, bool diffuseOnly) {
     }
   }
   for (const Material& material : scene.materials)
-    packed.rankOfMaterial.push_back(
-        bounds(material) ? static_cast<int>(shellOf(material) - shells.begin()) : -1);
+    packed.rankOfMaterial.push_back(bounds(material) ? static_cast<int>(shellOf(material) - shells.begin()) : -1);
   return packed;
 }
 

@@ -25,7 +25,7 @@ PackedMedia packMedia(const std::vector<Medium>& media, const glm::dvec3& origin
 
 /// Light from infinitely far does not get through Scene::cameraMedium, which has no end, unless a channel of it is
 /// clear or it is a grid. Throws Error(badInput) if there is no other light, since paths without absorption would then
-/// look for it almost for ever; warns if there is.
+/// look for it almost for ever; warns if there is, and if such paths find nothing that ends them.
 void checkOuterMedium(const Scene& scene, const SceneFeatures& features);
 
 /// Counts of closed boundaries around a point, 4 bits per rank (boundary.glsl).
