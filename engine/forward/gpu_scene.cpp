@@ -182,8 +182,7 @@ void GpuScene::setValues(Surface& surface, const Material& material) const {
 void GpuScene::replaceMeshes() {
   for (std::size_t i = 0; i < surfaces_.size(); ++i) setValues(surfaces_[i], scene_->materials[i]);
   all_ = {};
-  before_ = {};
-  movedVertices_.clear();
+  forgetPlaces();
   ++poses_;
   uploadMeshes();
 }
@@ -195,7 +194,7 @@ void GpuScene::update(const std::vector<std::size_t>& meshes) {
     const Mesh& mesh = scene_->meshes[index];
     const VertexRange range = vertexRange(*scene_, mesh);
     vertices_.upload(range.first * sizeof(Vertex), range.count * sizeof(Vertex), &scene_->vertices[range.first]);
-    movedVertices_.push_back(range);
+    if (before_.id() != 0) movedVertices_.push_back(range);
     for (std::vector<Draw>* draws : {&all_.opaque_, &all_.masked_})
       for (Draw& draw : *draws) {
         if (draw.firstInScene != mesh.firstIndex || mesh.indexCount == 0) continue;

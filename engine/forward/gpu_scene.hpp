@@ -81,10 +81,15 @@ class GpuScene {
   /// All its meshes are others, of the same materials.
   void replaceMeshes();
 
-  /// Keeps the places of vertices, as those of the frame before; does nothing before the first update() of a mesh.
+  /// Keeps the places of vertices, as those of the frame before, from the first update() of a mesh on.
   void keepPlaces();
+  /// Nobody wants to know them.
+  void forgetPlaces() {
+    before_ = {};
+    movedVertices_.clear();
+  }
   /// Whether a mesh has moved since they were kept.
-  bool hasMoved() const { return before_.id() != 0 && !movedVertices_.empty(); }
+  bool hasMoved() const { return !movedVertices_.empty(); }
   /// Draws the meshes that have. Attribute kPlaceBefore: a vertex's place then.
   void drawMoved(const SurfacePrograms& programs) const;
   static constexpr GLuint kPlaceBefore = 3;

@@ -629,6 +629,7 @@ void Renderer::showAccumulated(int sample, bool moves) {
   }
   antialiasing_.accumulate(frame, moves, settings_.reprojection, settings_.pixelSamples, noAttributes_);
   if (settings_.reprojection) gpuScene_->keepPlaces();
+  else gpuScene_->forgetPlaces();
   shown_ = &antialiasing_.shown();
 }
 
