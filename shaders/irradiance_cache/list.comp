@@ -24,7 +24,7 @@ uniform uint pathTarget;  // paths that each record should have
 #if SPLIT
 uniform float shareOfParts;  // paths of all parts of cells, over those of all cells
 uniform uint mostTiles;
-uniform bool listsParts;  // also those that lack paths
+uniform bool listsParts;    // else records of cells alone
 layout(std430, binding = CACHE_TILES_BUFFER) restrict buffer CacheTiles { uint tiles[]; };
 #endif
 uniform bool countsFading;  // also list records whose shown value is still fading in
