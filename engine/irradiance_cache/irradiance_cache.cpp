@@ -606,15 +606,16 @@ void IrradianceCache::bindForRays() const {
 }
 
 std::vector<InspectedPart> IrradianceCache::inspect(const glm::vec3& position, const glm::vec3& normal) const {
-  const InspectedParts parts(24 * MAX_CASCADES);
+  const InspectedParts parts((split_ ? 48 : 24) * MAX_CASCADES);
   {
     const gl::Program& program =
-        programs_->loadCompute("cache inspect records", "irradiance_cache/inspect.comp", lookupFlags(settings_));
+        programs_->loadCompute("cache inspect records", "irradiance_cache/inspect.comp", pictureFlags());
     const gl::ComputePass pass("cache inspect records");
     program.use();
     bindRecords();
     bindForLookup();
     slotTable_.bind(UNIT_CACHE_SLOTS);
+    if (split_) split_->slots.bind(UNIT_CACHE_PART_SLOTS);
     program.set("inspectedPosition", position);
     program.set("inspectedNormal", normal);
     parts.bind();
