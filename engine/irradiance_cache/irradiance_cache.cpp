@@ -348,7 +348,7 @@ void IrradianceCache::split(const Inputs& inputs) {
 }
 
 // Lists visible records with fewer paths than `target`.
-void IrradianceCache::list(int target, bool countsFading) {
+void IrradianceCache::list(int target, bool countsFading, bool parts) {
   std::array<GLuint, kWorkWords> none = noWork();
   none[kFrame] = frame_;
   work_[0].upload(kWaiting * sizeof(GLuint), (kTraced - kWaiting) * sizeof(GLuint), &none[kWaiting]);
@@ -365,6 +365,7 @@ void IrradianceCache::list(int target, bool countsFading) {
   list_->set("countsFading", countsFading ? 1 : 0);
   if (split_) {
     list_->set("shareOfParts", settings_.splitShare);
+    list_->set("listsParts", parts ? 1 : 0);
     list_->set("mostTiles", static_cast<unsigned>(split_->mostTiles));
     split_->tiles.buffer().bindStorage(CACHE_TILES_BUFFER);
   }
@@ -388,8 +389,8 @@ void IrradianceCache::dispatchListed(const gl::ComputePass& pass, const gl::Prog
   }
 }
 
-void IrradianceCache::light(int target) {
-  list(target);
+void IrradianceCache::light(int target, bool parts) {
+  list(target, false, parts);
   const gl::ComputePass pass("cache paths", gl::Barrier::storage);
   paths_->use();
   irradiance_.bind(UNIT_CACHE);
@@ -573,9 +574,11 @@ void IrradianceCache::update(const Inputs& inputs, int rounds) {
     ring_->copy(work_[0]);
     return;
   }
-  for (int round = 0; round < rounds && !relights; ++round) {
+  // Paths of parts begin when they can end at records.
+  const int roundsOfCells = cached_ && split_ ? 1 : 0;
+  for (int round = 0; round < rounds + roundsOfCells && !relights; ++round) {
     if (cached_ && round > 0) store(mostChange);
-    light(settings_.samples);
+    light(settings_.samples, round >= roundsOfCells);
   }
   for (int paths = relights ? 0 : rounds * settings_.rays; paths < std::min(settings_.leastRays, settings_.samples);
        paths += settings_.rays)
@@ -603,15 +606,16 @@ void IrradianceCache::bindForRays() const {
 }
 
 std::vector<InspectedPart> IrradianceCache::inspect(const glm::vec3& position, const glm::vec3& normal) const {
-  const InspectedParts parts(24 * MAX_CASCADES);
+  const InspectedParts parts((split_ ? 48 : 24) * MAX_CASCADES);
   {
     const gl::Program& program =
-        programs_->loadCompute("cache inspect records", "irradiance_cache/inspect.comp", lookupFlags(settings_));
+        programs_->loadCompute("cache inspect records", "irradiance_cache/inspect.comp", pictureFlags());
     const gl::ComputePass pass("cache inspect records");
     program.use();
     bindRecords();
     bindForLookup();
     slotTable_.bind(UNIT_CACHE_SLOTS);
+    if (split_) split_->slots.bind(UNIT_CACHE_PART_SLOTS);
     program.set("inspectedPosition", position);
     program.set("inspectedNormal", normal);
     parts.bind();

@@ -157,8 +157,8 @@ class IrradianceCache {
   void mark(const Inputs& inputs);
   void claim(const Inputs& inputs, const std::array<const gl::Program*, 2>& programs, gl::BufferTexture& slots);
   void split(const Inputs& inputs);
-  void list(int target, bool countsFading = false);
-  void light(int target);
+  void list(int target, bool countsFading = false, bool parts = true);
+  void light(int target, bool parts = true);
   void gather(const Inputs& inputs);
   void store(float mostChange);
   void storeParts();

@@ -192,8 +192,9 @@ void IrradianceCacheFrame::addShares(const InspectedPixel& pixel, PixelInspectio
   answer.isFiltered = true;
   for (const InspectedPart& part :
        cache_.inspect(pixel.terms[INSPECTED_POSITION], pixel.terms[INSPECTED_MESH_NORMAL])) {
-    const std::string name =
-        fmt::format("record {} {} {} of cascade {}", part.number.x, part.number.y, part.number.z, part.number.w + 1);
+    const int cascades = settings().cascades.cascades;
+    const std::string name = fmt::format("{} {} {} {} of cascade {}", part.number.w < cascades ? "record" : "part",
+                                         part.number.x, part.number.y, part.number.z, part.number.w % cascades + 1);
     if (answer.add("irradiance cache", name, reflection * glm::dvec3(part.irradiance),
                    {position, glm::dvec3(part.place) + parts_.origin}))
       answer.shares.back().weight = part.weight;

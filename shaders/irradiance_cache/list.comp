@@ -24,6 +24,7 @@ uniform uint pathTarget;  // paths that each record should have
 #if SPLIT
 uniform float shareOfParts;  // paths of all parts of cells, over those of all cells
 uniform uint mostTiles;
+uniform bool listsParts;    // else records of cells alone
 layout(std430, binding = CACHE_TILES_BUFFER) restrict buffer CacheTiles { uint tiles[]; };
 #endif
 uniform bool countsFading;  // also list records whose shown value is still fading in
@@ -115,6 +116,7 @@ void main() {
 #endif
 #if SPLIT
   if (isPart(cell)) {
+    if (!listsParts) return;
     const float kLeast = 2.0 * float(PATHS);  // for an estimate of the noise
     float each = shareOfParts * float(pathTarget) * float(work.wanted - work.parts) / float(work.parts);
     target = min(target, uint(clampedInt(max(each, kLeast), 0, 1 << 30)));

@@ -68,7 +68,7 @@ void main() {
   }
 
   // The share of what is found that is not noise [JamesStein1961]; kNoise: of the bound, what there is of it.
-  const float kNoise = 0.5;
+  const float kNoise = 0.25;
   float share = clamp(1.0 - kNoise * errors2 / max(found2, 1e-30), 0.0, 1.0) *
                 shareOfSplit(cascade, face, record.position);
   vec3 shown = max(base + share * cacheUnit() * (difference + fittedDifference(fit)), 0.0);

@@ -176,9 +176,14 @@ Shadow queueShadowRay(Surface surface, uint triangle, float before2, vec3 throug
                       PathNumbers numbers) {
   Shadow shadow = Shadow(false, vec3(0.0), Ray(vec3(0.0), 0.0, vec3(1.0), 0.0), kNoHit);
   LightSample light;
-  if (!sampleLight(surface.position, surface.normal, randomPair(numbers, scatterings, kPurposeLight),
-                   randomWords(numbers, scatterings, kPurposePick), light))
-    return shadow;
+  uvec4 words = randomWords(numbers, scatterings, kPurposePick);
+  vec2 xi = randomPair(numbers, scatterings, kPurposeLight);
+  if (scatterings == 2u) {  // a record's light is that of its paths' first hits: all that decides it is spread evenly
+    uvec3 further = furtherWords(numbers, 1u, kPurposeScatter);
+    words.xy = uvec2(further.x, further.x * uint(lights.length() - SUN_APART));  // a light, and the rest for its alias
+    xi = unitFloat(further.yz);
+  }
+  if (!sampleLight(surface.position, surface.normal, xi, words, light)) return shadow;
   bool isLamp = light.pdf == 0.0;
   if (isLamp ? scatterings == 1u : lampsAlone) return shadow;
   float cosine = dot(light.direction, surface.normal);

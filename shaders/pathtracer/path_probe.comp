@@ -44,6 +44,11 @@ void main() {
   // a, b: corners and two numbers. A direction to the triangle and its solid angle.
   float angle = sphericalTriangle(a.xyz, b.xyz, corner);
   first = vec4(sphericalTriangleSample(a.xyz, b.xyz, corner, angle, vec2(a.w, b.w)), angle);
+#elif PROBE == 4
+  // a: as of 0.
+  uvec4 k = uvec4(a);  // bounded: likewise
+  PathNumbers numbers = PathNumbers(k.x, k.y, uint(b.x));  // bounded: likewise
+  first = vec4(vec3(furtherWords(numbers, k.z, k.w) >> 8u), 0.0);
 #endif
   outputs[2u * i] = first;
   outputs[2u * i + 1u] = second;

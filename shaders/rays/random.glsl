@@ -101,15 +101,43 @@ uint sobolReversed(uint i) {
   return i;
 }
 
+// Index of a point of Sobol's sequence: sampleIndex shuffled, of which 2^k in turn have an aligned part of 2^k points.
+uint shuffledIndex(PathNumbers numbers, uvec4 seeds) {
+  return bitfieldReverse(owenReversed(bitfieldReverse(numbers.sampleIndex), seeds.x));
+}
+
+uvec4 seedsOf(PathNumbers numbers, uint event, uint purpose) {
+  return pcg4d(uvec4(numbers.pixel, 0xffffffffu, event, purpose ^ numbers.seed));
+}
+
 // Two numbers of 32 random bits each.
 uvec2 randomWordPair(PathNumbers numbers, uint event, uint purpose) {
 #if LINEAR_SEEDS
   return linearWords(numbers, event, purpose).xy;
 #endif
   if (event >= kLowDiscrepancyEvents) return randomWords(numbers, event, purpose).xy;
-  uvec4 seeds = pcg4d(uvec4(numbers.pixel, 0xffffffffu, event, purpose ^ numbers.seed));
-  uint i = bitfieldReverse(owenReversed(bitfieldReverse(numbers.sampleIndex), seeds.x));
+  uvec4 seeds = seedsOf(numbers, event, purpose);
+  uint i = shuffledIndex(numbers, seeds);
   return bitfieldReverse(uvec2(owenReversed(i, seeds.y), owenReversed(sobolReversed(i), seeds.z)));
+}
+
+// Three more dimensions of the points that randomWordPair has for an event and a purpose [JoeKuo2008]: numbers that
+// decide together with that pair how much light a path finds, so that all five are spread evenly.
+uvec3 furtherWords(PathNumbers numbers, uint event, uint purpose) {
+  uvec4 seeds = seedsOf(numbers, event, purpose);
+  uvec3 words = uvec3(0u), third = uvec3(0x80000000u), second = uvec3(0xc0000000u, 0xc0000000u, 0x40000000u),
+        first = uvec3(0x60000000u, 0x20000000u, 0x20000000u);
+  uint index = shuffledIndex(numbers, seeds);
+  for (uint k = 0u; k < 16u; ++k) {  // of further bits, one part of the sequence repeats
+    words ^= third * (index >> k & 1u);
+    // direction numbers of the primitive polynomials x^2 + x + 1, x^3 + x + 1 and x^3 + x^2 + 1
+    uvec3 next = uvec3(first.x ^ second.x ^ second.x >> 2u, second.y ^ third.y ^ third.y >> 3u,
+                       first.z ^ third.z ^ third.z >> 3u);
+    third = second, second = first, first = next;
+  }
+  uvec4 further = pcg4d(seeds);
+  for (int k = 0; k < 3; ++k) words[k] = bitfieldReverse(owenReversed(bitfieldReverse(words[k]), further[k]));
+  return words;
 }
 
 // Two numbers in [0, 1).

@@ -29,7 +29,7 @@ struct InspectedPart {
   float weight;   // of a cell or record in the lookup
   vec3 place;     // where the light comes from, among the frame's positions
   float padding;
-  ivec4 number;   // x, y and layer of a texel; x, y, z and cascade of a cell
+  ivec4 number;   // x, y and layer of a texel; x, y, z and cascade of a cell, or of a part of one plus all cascades
   vec4 red;       // coefficients of a cell's light, as stored
   vec4 green;
   vec4 blue;

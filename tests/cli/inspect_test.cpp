@@ -83,6 +83,10 @@ TEST_F(Inspect, SharesAddUpToThePixelOfPropagatedLight) { expectWhole(kCornell, 
 
 TEST_F(Inspect, SharesAddUpToThePixelOfCacheRecords) {
   expectWhole(kCornell, kSmall + "--technique irradiance-cache --set cache.samples=64", 32, 20);
+  // Where surfaces meet, in cells that are split.
+  for (const glm::ivec2& pixel : {glm::ivec2(46, 14), glm::ivec2(13, 50)})
+    expectWhole(kCornell, kSmall + "--technique irradiance-cache --component indirect --set cache.split=4", pixel.x,
+                pixel.y);
 }
 
 TEST_F(Inspect, SharesAddUpToThePixelOfPatches) {

@@ -46,6 +46,30 @@ std::uint32_t sobol(std::uint32_t i, int dimension) {
   return x;
 }
 
+/// Its third to fifth dimension: degree, inner coefficients and first direction numbers of [JoeKuo2008].
+std::uint32_t furtherSobol(std::uint32_t i, int dimension) {
+  struct Row {
+    int degree;
+    unsigned inner;
+    std::array<std::uint32_t, 3> first;
+  };
+  constexpr std::array<Row, 3> kRows{{{2, 1, {1, 3, 0}}, {3, 1, {1, 3, 1}}, {3, 2, {1, 1, 1}}}};
+  const auto& [s, inner, first] = kRows[static_cast<std::size_t>(dimension)];
+  std::vector<std::uint64_t> m(first.begin(), first.begin() + s);
+  std::uint32_t x = 0;
+  for (int k = 0; k < 32; ++k) {
+    if (k >= s) {
+      const auto before = [&](int j) { return m[static_cast<std::size_t>(k - j)] << j; };
+      std::uint64_t next = m[static_cast<std::size_t>(k - s)] ^ before(s);
+      for (int j = 1; j < s; ++j)
+        if (inner >> (s - 1 - j) & 1u) next ^= before(j);
+      m.push_back(next);
+    }
+    if (i >> k & 1u) x ^= static_cast<std::uint32_t>(m[static_cast<std::size_t>(k)] << (31 - k));
+  }
+  return x;
+}
+
 std::uint32_t scrambled(std::uint32_t x, std::uint32_t seed) {
   x = reversed(x);
   x ^= x * 0x3d20adeau;
@@ -173,6 +197,28 @@ TEST_F(PathFunctionsTest, FirstPairsAreEvenlySpread) {
                                         static_cast<int>(r[0].x * static_cast<float>(columns)))];
     EXPECT_EQ(counts, std::vector<int>(256, 1)) << columns;
   }
+}
+
+// The same, and each dimension alone holds one of 256 points in each 256th.
+TEST_F(PathFunctionsTest, FurtherNumbersAreTheReferencesAndEvenlySpread) {
+  std::vector<Pair> inputs;
+  for (int i = 0; i < 1024; ++i)
+    inputs.push_back({glm::vec4(i / 256 + 77, i % 256, 1, 3), glm::vec4(i / 512, 0, 0, 0)});
+  const std::vector<Pair> results = probe(4, inputs);
+  std::vector<int> counts(static_cast<std::size_t>(4 * 3 * 256), 0);
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const auto pixel = static_cast<std::uint32_t>(i / 256 + 77), sample = static_cast<std::uint32_t>(i % 256);
+    const auto seeds = pcg4d({pixel, 0xffffffffu, 1u, 3u ^ static_cast<std::uint32_t>(i / 512)}),
+               further = pcg4d(seeds);
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t word =
+          scrambled(furtherSobol(scrambled(sample, seeds[0]) & 0xffffu, k), further[static_cast<std::size_t>(k)]);
+      ASSERT_EQ(results[i][0][k], static_cast<float>(word >> 8)) << i << " " << k;
+      ++counts[(i / 256 * 3 + static_cast<std::size_t>(k)) * 256 +
+               static_cast<std::size_t>(results[i][0][k] / 65536.0f)];
+    }
+  }
+  EXPECT_EQ(counts, std::vector<int>(counts.size(), 1));
 }
 
 TEST_F(PathFunctionsTest, MicrofacetsAndFresnelAreTheReferences) {
