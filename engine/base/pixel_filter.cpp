@@ -1,9 +1,9 @@
 #include "base/pixel_filter.hpp"
 
 #include "base/error.hpp"
-#include "base/radical_inverse.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -14,13 +14,34 @@ namespace {
 
 constexpr double kFilterRadius = 1.5;
 
-/// The second dimension of Sobol's sequence, bits reversed; the first is the index's own bits, reversed.
-double sobolSecond(std::uint32_t index) {
+std::uint32_t reversed(std::uint32_t bits) {
+  std::uint32_t result = 0;
+  for (int i = 0; i < 32; ++i, bits >>= 1) result = result << 1 | (bits & 1u);
+  return result;
+}
+
+/// The second dimension of Sobol's sequence; the first is the index's own bits, reversed.
+std::uint32_t sobolSecond(std::uint32_t index) {
   std::uint32_t sum = 0;
   for (std::uint32_t direction = 0x80000000u; index != 0; index >>= 1, direction ^= direction >> 1)
     if (index & 1u) sum ^= direction;
-  return sum * 0x1p-32;
+  return sum;
 }
+
+/// Owen scrambling of a bit-reversed number [Burley2020], as in shaders/rays/random.glsl.
+std::uint32_t owenReversed(std::uint32_t x, std::uint32_t seed) {
+  x ^= x * 0x3d20adeau;
+  x += seed;
+  x *= (seed >> 16) | 1u;
+  x ^= x * 0x05526c56u;
+  x ^= x * 0x53a22864u;
+  return x;
+}
+
+// Of 35,000 pairs those with which the first 2 to 64 samples cover edges of all directions best. Sobol's own first 16
+// leave gaps across 45 degrees: the share of an edge there is off by 0.073 (root mean square over its places), with
+// these by 0.039 in the worst direction, and by 0.031 in place of 0.038 over all directions.
+constexpr std::uint32_t kSeeds[2] = {0x03766763u, 0xba6c7cddu};
 
 }  // namespace
 
@@ -70,10 +91,14 @@ std::vector<glm::dvec2> pixelSamples(PixelFilter filter, int count) {
     const auto node = std::min(static_cast<std::size_t>(place), quantiles.size() - 2);
     return quantiles[node] + (place - static_cast<double>(node)) * (quantiles[node + 1] - quantiles[node]);
   };
+  // Places in the middle of 2^n parts of each side, the least power of two that is not below the count.
+  const double parts = std::bit_ceil(static_cast<std::uint32_t>(count));
+  const auto middle = [&](std::uint32_t word) { return (std::floor(word * 0x1p-32 * parts) + 0.5) / parts; };
   std::vector<glm::dvec2> shares;
   glm::dvec2 mean(0.0);
   for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(count); ++i) {
-    shares.emplace_back(radicalInverse(i), sobolSecond(i));
+    shares.emplace_back(middle(reversed(owenReversed(i, kSeeds[0]))),
+                        middle(reversed(owenReversed(reversed(sobolSecond(i)), kSeeds[1]))));
     mean += shares.back() / static_cast<double>(count);
   }
   std::vector<glm::dvec2> samples;
