@@ -96,7 +96,7 @@ void PathOptions::declare(Command app) {
   app.addOption("--error", error,
                 "path: stop when the pixels' standard error (root mean square) is this fraction of the mean radiance; "
                 "of n samples that found no light, 3 count as if they could have. With --denoise: or when the "
-                "upper end of the denoised picture's error is")
+                "denoised picture's error is")
       .positive();
   app.addOption("--bounces", bounces, "path: maximum number of scatterings (no limit)");
   app.addOption("--checkpoint", checkpoint,
@@ -201,15 +201,13 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
     } catch (const Error& error) { logWarning("--checkpoint {}; rendering continues without it", error.what()); }
     saved = elapsed();
   };
-  // Of the denoised picture, which is no worse than the raw one, the upper end of the error counts. Finding it costs a
-  // few samples, so it is looked for each time they have grown by half.
-  std::uint32_t denoisedAt = 0;
+  // Of what is shown: the denoised picture is no worse than the raw one.
   const auto isWithin = [&](double wanted) {
     if (done >= 4 && tracer.statistics().relativeError <= wanted) return true;
-    if (!denoiser || done < std::max(Denoiser::kFewestSamples, denoisedAt + denoisedAt / 2)) return false;
+    if (!denoiser || done < Denoiser::kFewestSamples) return false;
     denoiser->denoise();
-    denoisedAt = done;
-    return denoiser->error().high <= wanted;
+    const DenoisedError error = denoiser->error();
+    return error.known && error.value <= wanted;
   };
   // Sample in steps: between them the error is checked, and all pixels have the same number of samples.
   while (done < target && !stopped) {
@@ -260,7 +258,9 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
     if (denoised.known)
       fmt::print(": root mean square error {:.3g} of the mean, between {:.3g} and {:.3g} (99 %); {:.3g} before",
                  denoised.value, denoised.low, denoised.high, denoised.raw);
-    else fmt::print("; below {} samples per pixel its error is not known", Denoiser::kFewestSamples);
+    else if (statistics.samples < Denoiser::kFewestSamples)
+      fmt::print("; below {} samples per pixel its error is not known", Denoiser::kFewestSamples);
+    else fmt::print("; of so few pixels its error is not known");
     fmt::print("\n");
   }
   nlohmann::ordered_json json;

@@ -30,6 +30,20 @@
 
 namespace lucerna::demo {
 
+namespace {
+
+/// CLI11's own message names the largest number of the type, in 309 digits. What is no number is refused elsewhere.
+CLI::Validator numberThat(bool (*isRight)(double), const std::string& wrong, const std::string& name) {
+  return {[isRight, wrong](std::string& text) {
+            char* end = nullptr;
+            const double value = std::strtod(text.c_str(), &end);
+            return *end != '\0' || isRight(value) ? std::string() : fmt::format("{} {}", text, wrong);
+          },
+          name};
+}
+
+}  // namespace
+
 Option Option::required() const {
   option_->required();
   return *this;
@@ -56,7 +70,7 @@ Option Option::range(double least, double most) const {
 }
 
 Option Option::positive() const {
-  option_->check(CLI::PositiveNumber);
+  option_->check(numberThat([](double value) { return value > 0.0; }, "is not above 0", "POSITIVE"));
   return *this;
 }
 
@@ -66,7 +80,7 @@ Option Option::oneOf(const std::vector<std::string>& words) const {
 }
 
 Option Option::notNegative() const {
-  option_->check(CLI::NonNegativeNumber);
+  option_->check(numberThat([](double value) { return value >= 0.0; }, "is below 0", "NONNEGATIVE"));
   return *this;
 }
 

@@ -11,6 +11,7 @@
 
 #include <csignal>
 #include <ctime>
+#include <string>
 #include <unistd.h>
 
 namespace lucerna::demo {
@@ -63,19 +64,19 @@ Progress::~Progress() {
 void Progress::update(int done) {
   if (!enabled_) return;
   const double seconds = secondsSince(start_);
-  const double rest = done > 0 ? seconds / done * (total_ - done) : 0.0;
+  const std::string rest = done > 0 ? fmt::format(", {:.0f} s left", seconds / done * (total_ - done)) : "";
   if (!isTerminal_) {
     constexpr double kBetweenLines = 30.0;
     if (secondsSince(line_) < kBetweenLines) return;
-    fmt::print(stderr, "{}: {}/{}, {:.0f} s left\n", what_, done, total_, rest);
+    fmt::print(stderr, "{}: {}/{}{}\n", what_, done, total_, rest);
     line_ = Clock::now();
     return;
   }
   if (seconds < 1.0 && !drawn_) return;
   constexpr int kWidth = 30;
   const int filled = total_ > 0 ? kWidth * done / total_ : 0;
-  fmt::print(stderr, "\r{} [{:#<{}}{:-<{}}] {}/{}, {:.0f} s left \x1b[K", what_, "", filled, "", kWidth - filled, done,
-             total_, rest);
+  fmt::print(stderr, "\r{} [{:#<{}}{:-<{}}] {}/{}{} \x1b[K", what_, "", filled, "", kWidth - filled, done, total_,
+             rest);
   std::fflush(stderr);
   drawn_ = true;
 }

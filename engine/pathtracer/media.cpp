@@ -249,7 +249,7 @@ void checkOuterMedium(const Scene& scene, const SceneFeatures& features) {
   }
   for (int c = 0; c < 3; ++c)
     if (isLitWithin && medium.scattering[c] > 0.0f && medium.absorption[c] == 0.0f) {
-      logWarning("medium {} has no end and absorbs nothing, so paths in it end after a million scatterings; {}",
+      logWarning("medium {} has no end and absorbs nothing, so paths in it hardly ever end, nor may the picture; {}",
                  medium.name, end);
       return;
     }
