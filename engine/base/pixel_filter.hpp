@@ -28,8 +28,8 @@ constexpr std::size_t kFilterNodes = 64;
 /// the tails; linear in i between them.
 std::array<float, kFilterNodes> filterQuantiles(PixelFilter filter);
 
-/// `count` samples of a pixel, the same for all pixels: the beginning of Sobol's (0,2)-sequence, scrambled so that edges
-/// of every direction are covered evenly, and moved so that their mean is the centre; one sample is the centre.
+/// `count` samples of a pixel, the same for all pixels: the beginning of Sobol's (0,2)-sequence, scrambled for edges of
+/// every direction, and moved so that their mean is the centre; one sample is the centre.
 std::vector<glm::dvec2> pixelSamples(PixelFilter filter, int count);
 
 }  // namespace lucerna
