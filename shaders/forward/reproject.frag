@@ -2,8 +2,9 @@
 // In motion each pixel's surface, the nearest of the pixel's neighbourhood so that edges move with what is before them,
 // is looked for where the frame before showed it; an object that moves, by its own motion. The mean found there is
 // limited to the new frame's own range around the pixel: mean and kDeviations standard deviations of 3x3 pixels
-// [Salvi2016]. Not that of path traced frames: nine noisy pixels do not know the range, and may all be black. All in
-// linear radiance, as a camera adds up light: a mean of colours compressed by brightness is too dark at bright edges.
+// [Salvi2016], within their extremes, beyond which the filter overshoots. Not that of path traced frames: nine noisy
+// pixels do not know the range, and may all be black. All in linear radiance, as a camera adds up light: a mean of
+// colours compressed by brightness is too dark at bright edges.
 #include "lib/clamped_int.glsl"
 layout(binding = 0) uniform sampler2D radianceTexture;
 layout(binding = 1) uniform sampler2D depthTexture;
@@ -54,7 +55,7 @@ void main() {
   vec4 nearest = vec4(0.0, 0.0, 1.0, 1.0);
   ivec2 nearestPixel = pixel;
   float inverseLeast = 0.0, inverseMost = kInfinite;
-  vec3 sum = vec3(0.0), squares = vec3(0.0);
+  vec3 sum = vec3(0.0), squares = vec3(0.0), least = vec3(kInfinite), largest = vec3(0.0);
   for (int y = -1; y <= 1; ++y)
     for (int x = -1; x <= 1; ++x) {
       ivec2 place = clamp(pixel + ivec2(x, y), ivec2(0), last);
@@ -70,6 +71,8 @@ void main() {
       vec3 c = texelFetch(radianceTexture, place, 0).rgb;
       sum += c;
       squares += c * c;
+      least = min(least, c);
+      largest = max(largest, c);
     }
   bool isFar = inverseLeast == 0.0;
   if (isFar) nearest.xy = 2.0 * gl_FragCoord.xy / size - 1.0;
@@ -102,7 +105,7 @@ void main() {
   if (isPathTraced == 0) {
     vec3 middle = sum / 9.0, range = kDeviations * sqrt(max(squares / 9.0 - middle * middle, vec3(0.0)));
     vec3 away = old - middle, ratios = abs(away) / max(range, vec3(1e-30));
-    old = middle + away / max(1.0, max(ratios.r, max(ratios.g, ratios.b)));
+    old = clamp(middle + away / max(1.0, max(ratios.r, max(ratios.g, ratios.b))), least, largest);
   }
   float count = min(texelFetch(beforeTexture, pixelBefore, 0).a + frames, mostInMotion);
   mean = vec4(mix(old, radiance, frames / count), count);
