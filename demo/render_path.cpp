@@ -15,6 +15,8 @@
 #include <fmt/core.h>
 
 #include <cmath>
+#include <cstdint>
+#include <utility>
 
 namespace lucerna::demo {
 
@@ -201,11 +203,15 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
     } catch (const Error& error) { logWarning("--checkpoint {}; rendering continues without it", error.what()); }
     saved = elapsed();
   };
+  std::uint32_t denoisedSamples = 0;  // of the denoised picture
+  const auto denoise = [&] {
+    if (tracer.samples() != std::exchange(denoisedSamples, tracer.samples())) denoiser->denoise();
+  };
   // Of what is shown: the denoised picture is no worse than the raw one.
   const auto isWithin = [&](double wanted) {
     if (done >= 4 && tracer.statistics().relativeError <= wanted) return true;
     if (!denoiser || done < Denoiser::kFewestSamples) return false;
-    denoiser->denoise();
+    denoise();
     const DenoisedError error = denoiser->error();
     return error.known && error.value <= wanted;
   };
@@ -228,7 +234,7 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
     }
   }
   tracer.dropUnfinishedPass();
-  if (denoiser && !interrupted()) denoiser->denoise();
+  if (denoiser && !interrupted()) denoise();
   const double seconds = elapsed();
   if (interrupted()) {
     save();

@@ -104,7 +104,7 @@ Lies liesIn(const std::vector<BoundaryTriangle>& inner, const std::vector<Bounda
   Lies lies = Lies::apart;
   for (std::size_t i = 0; i < inner.size(); i += stride) {
     const glm::dvec3 a(inner[i].a), ab = glm::dvec3(inner[i].b) - a, ac = glm::dvec3(inner[i].c) - a,
-                                    normal = glm::cross(ab, ac);
+                     normal = glm::cross(ab, ac);
     if (!(glm::length(normal) > 0.0)) continue;
     int inside = 0, all = 0;
     for (int u = 0; u <= kSteps; ++u)
@@ -307,7 +307,8 @@ PackedBoundaries rankBoundaries(const Scene& scene, bool diffuseOnly) {
     }
   }
   for (const Material& material : scene.materials)
-    packed.rankOfMaterial.push_back(bounds(material) ? static_cast<int>(shellOf(material) - shells.begin()) : -1);
+    packed.rankOfMaterial.push_back(
+        bounds(material) ? static_cast<int>(shellOf(material) - shells.begin()) : -1);
   return packed;
 }
 
