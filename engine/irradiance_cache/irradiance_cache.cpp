@@ -491,7 +491,7 @@ void IrradianceCache::store(float mostChange) {
 // Parts are for the picture alone: no path ends at them.
 void IrradianceCache::storeParts() {
   if (!split_) return;
-  const gl::ComputePass parts("cache store parts", gl::Barrier::storage | gl::Barrier::textureFetch);
+  const gl::ComputePass parts("cache store parts", gl::Barrier::storage);
   split_->store->use();
   split_->store->set("pathsOfRound", static_cast<float>(settings_.rays));
   bindRecords();

@@ -147,7 +147,7 @@ void Denoiser::traceFeatures() {
 
 // Means and variances of the film's pixels, into film_.
 void Denoiser::readFilm() {
-  const gl::ComputePass pass("film of halves", gl::Barrier::image, gl::Barrier::image);
+  const gl::ComputePass pass("film of halves", gl::Barrier::image);
   readFilm_->use();
   readFilm_->set("picture", tracer_.settings().size);
   tracer_.bindMean(0);
@@ -158,7 +158,7 @@ void Denoiser::readFilm() {
 
 void Denoiser::regress(const gl::Program& program, const gl::Texture& to, const gl::Texture* guide, int radius) {
   const glm::ivec2 picture = tracer_.settings().size;
-  const gl::ComputePass pass("denoiser fit", gl::Barrier::textureFetch | gl::Barrier::image, gl::Barrier::image);
+  const gl::ComputePass pass("denoiser fit", gl::Barrier::image);
   program.use();
   program.set("picture", picture);
   tracer_.bindMean(0);
@@ -178,14 +178,14 @@ void Denoiser::regress(const gl::Program& program, const gl::Texture& to, const 
 // The raw picture's sum, into total_.
 void Denoiser::sumRadiance() {
   {
-    const gl::ComputePass pass("sums of blocks", gl::Barrier::textureFetch, gl::Barrier::image);
+    const gl::ComputePass pass("sums of blocks", gl::Barrier::textureFetch);
     rawSums_->use();
     rawSums_->set("picture", tracer_.settings().size);
     tracer_.bindMean(0);
     blocks_.bindImage(0, gl::Access::write);
     pass.dispatch(glm::ivec3(tracer_.settings().size, 1), glm::ivec3(kGroup, kGroup, 1));
   }
-  const gl::ComputePass pass("sum of blocks", gl::Barrier::textureFetch, gl::Barrier::image);
+  const gl::ComputePass pass("sum of blocks", gl::Barrier::textureFetch);
   allSums_->use();
   blocks_.bind(2);
   total_.bindImage(0, gl::Access::write);
@@ -218,13 +218,13 @@ void Denoiser::combine() {
     run(*terms_, kRegressors, pass);
   }
   {
-    const gl::ComputePass pass("denoiser rows", gl::Barrier::textureFetch, gl::Barrier::image);
+    const gl::ComputePass pass("denoiser rows", gl::Barrier::textureFetch);
     rows_->use();
     rows_->set("picture", picture);
     for (GLuint i = 0; i < row_.size(); ++i) term_[i].bind(i), row_[i].bindImage(i, gl::Access::write);
     run(*rows_, 2.0 * kWindow, pass);
   }
-  const gl::ComputePass pass("denoised", gl::Barrier::textureFetch, gl::Barrier::image);
+  const gl::ComputePass pass("denoised", gl::Barrier::textureFetch);
   combine_->use();
   combine_->set("picture", picture);
   bindCandidates();

@@ -28,7 +28,7 @@ LightVisibility::LightVisibility(gl::ProgramLibrary& programs, const Scene& scen
   const gl::Program& program = programs.loadCompute(
       "light visibility", "pathtracer/light_visibility.comp",
       gl::with(traced.flags(), {{"LINEAR_SEEDS", 0}, {"GLOSSY", 0}, {"SHARED_STACK", traced.rays().sharedStack()}}));
-  const gl::ComputePass pass("light visibility", gl::Barrier::textureFetch, gl::Barrier::storage);
+  const gl::ComputePass pass("light visibility", gl::Barrier::textureFetch);
   program.use();
   constants.bindUniform(0);
   traced.bind();

@@ -33,7 +33,7 @@ void RasterMethod::findVisible(const HemicubeRange& range) {
   batch_.factors().clear();
   const glm::ivec3 lists = batch_.groupsOfLists(range);
   {
-    const gl::ComputePass pass(points_.name(), kWithCounts);
+    const gl::ComputePass pass(points_.name(), kStorage);
     batch_.use(points_, range);
     pass.dispatch(batch_.groupsOfBlocks(), glm::ivec3(1));
   }
