@@ -229,7 +229,7 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
               (path.error && isWithin(*path.error));
     if (path.error && !stopped && done < target && tracer.statistics().mean == glm::dvec3(0.0) &&
         static_cast<double>(done) * settings.size.x * settings.size.y >= kMostDark) {
-      logWarning("--error: none of {} samples a pixel has found light; the picture is black", done);
+      logWarning("--error: none of {} samples a pixel has found light", done);
       stopped = true;
     }
   }
@@ -249,6 +249,7 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   if (lowerExtension(output) == ".png") writePng(output, toneMapped(image, shared.exposure.value_or(scene.exposure)));
   else if (!output.empty())  // for a part, only the checkpoint may be wanted
     writeImage(output, image);
+  if (statistics.mean == glm::dvec3(0.0)) logWarning("{}", kBlackPicture);
   // After the picture, so that a full disk does not cost it.
   if (!path.checkpoint.empty()) save();
   else if (!isOfAnother) std::filesystem::remove(checkpoint);

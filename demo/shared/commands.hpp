@@ -29,6 +29,9 @@ Work addMedia(Command app);
 Work addRadiosity(Command app);
 Work addCompare(Command app);
 
+constexpr const char* kBlackPicture =
+    "the picture is black: no light reaches what this view shows; --camera chooses another";
+
 /// --host, --json, --quiet: every subcommand has them.
 struct CommonOptions {
   std::string host;  ///< empty: LUCERNA_HOST, else the default

@@ -112,7 +112,7 @@ void setDefaultView(Scene& scene) {
   // do not come first.
   const bool blind = !scene.cameras.empty() && !seesAnything(scene.cameras.front(), scene.main());
   if (blind)
-    logWarning("{}: camera '{}' sees nothing of the scene; using the default view from outside", scene.file.string(),
+    logWarning("{}: camera '{}' sees nothing of the scene; using the default view", scene.file.string(),
                scene.cameras.front().name);
   if (!scene.cameras.empty() && !blind) return;
   scene.cameras.insert(scene.cameras.begin(), studioView(scene));

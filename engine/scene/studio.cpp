@@ -15,6 +15,7 @@ namespace lucerna {
 namespace {
 
 constexpr double kFov = 50.0 * kPi / 180.0;
+constexpr double kFovWithin = 70.0 * kPi / 180.0;
 constexpr double kWidthOverHeight = 16.0 / 9.0;
 constexpr double kBoxFill = 0.95;  ///< into an open box: its opening is the frame
 const glm::dvec3 kThreeSides = -glm::normalize(glm::dvec3(0.5, 0.35, 1.0));
@@ -76,14 +77,36 @@ Surroundings lookAround(const Scene& scene) {
 
 /// The direction out of an open box, that of an axis if it is near one. None if what most rays meet is not its inside,
 /// or too few leave.
-std::optional<glm::dvec3> openingOf(const Scene& scene) {
-  const Surroundings seen = lookAround(scene);
+std::optional<glm::dvec3> openingOf(const Surroundings& seen) {
   const double length = glm::length(seen.opening);
   if (seen.fronts < kRays / 2 || length < 1.0 || std::abs(seen.opening.y) > 0.9 * length) return {};
   const glm::dvec3 out = seen.opening / length;
   for (const glm::dvec3& axis : {glm::dvec3(1, 0, 0), glm::dvec3(-1, 0, 0), glm::dvec3(0, 0, 1), glm::dvec3(0, 0, -1)})
     if (glm::dot(axis, out) > 0.9) return axis;
   return out;
+}
+
+/// Along the longest level line through the middle of a closed room, from close to its end.
+Camera viewWithin(const Scene& scene) {
+  constexpr int kLines = 16;
+  constexpr double kKeptFromWall = 0.1;  // of the way there
+  Camera camera;
+  camera.name = "default";
+  camera.verticalFov = kFovWithin;
+  const glm::dvec3 middle = scene.main().centre();
+  double longest = 0.0;
+  for (int i = 0; i < kLines; ++i) {
+    const double angle = kPi * i / kLines;
+    const glm::dvec3 ahead(std::cos(angle), 0.0, -std::sin(angle));
+    const double back = firstHit(scene, middle, -ahead).distance,
+                 length = back + firstHit(scene, middle, ahead).distance;
+    if (!(std::isfinite(length) && length > longest)) continue;
+    longest = length;
+    camera.direction = ahead;
+    camera.position = middle - (1.0 - kKeptFromWall) * back * ahead;
+  }
+  camera.up = {0.0, 1.0, 0.0};
+  return camera;
 }
 
 /// Moves a camera so that all vertices fill that part of the picture's height or width, and are in its middle.
@@ -109,10 +132,12 @@ void frame(Camera& camera, const Scene& scene, double fill) {
 }  // namespace
 
 Camera studioView(const Scene& scene) {
+  const Surroundings seen = lookAround(scene);
+  const std::optional<glm::dvec3> opening = openingOf(seen);
+  if (!opening && !scene.defaultSun && seen.fronts > kRays * 9 / 10) return viewWithin(scene);
   Camera camera;
   camera.name = "default";
   camera.verticalFov = kFov;
-  const std::optional<glm::dvec3> opening = openingOf(scene);
   camera.direction = opening ? -*opening : kThreeSides;
   camera.up = glm::normalize(glm::dvec3(0.0, 1.0, 0.0) - camera.direction.y * camera.direction);
   frame(camera, scene, opening ? kBoxFill : kStudioFill);

@@ -201,6 +201,24 @@ TEST_F(Inputs, WhatCannotBeWrittenIsToldAtOnce) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder().path() / "folder"), fs::directory_iterator()), 0);
 }
 
+TEST_F(Inputs, ABlackPictureIsSaidSo) {
+  folder().write("wall.obj",
+                 "mtllib wall.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 -9\nv 1 0 -9\nv 0 1 -9\n"
+                 "usemtl grey\nf 1 2 3\nusemtl lamp\nf 6 5 4\n");
+  folder().write("wall.mtl", "newmtl grey\nKd 0.5 0.5 0.5\nnewmtl lamp\nKe 9 9 9\n");
+  const std::string away =
+      path("wall.obj") + " --size 16x16 --camera 0.3,0.3,2,0.3,0.3,0,20 ";  // the lamp is behind it
+  for (const char* technique : {"path --spp 4", "irradiance-cache"}) {
+    const RunResult result =
+        run("'" LUCERNA_BINARY "' render " + away + "-o " + path("a.png") + " --technique " + technique);
+    EXPECT_EQ(result.exitCode, 0) << technique;
+    EXPECT_NE(result.err.find("the picture is black"), std::string::npos) << technique << ": " << result.err;
+  }
+  expectRefused("bench error " + away + "--quiet --reference-spp 4 --small --frames 1 --techniques direct --out " +
+                    path("b") + " --references " + path("r"),
+                2, {"reference", "black", "--camera"});
+}
+
 TEST_F(Inputs, ARefusedReportMakesNoFolder) {
   expectRefused("bench all --out " + path("report") + " --parts nonsense", 2, {"nonsense", "stability"});
   expectRefused("bench all --out " + path("report") + " --scale 9", 2, {"--scale"});

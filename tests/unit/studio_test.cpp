@@ -63,10 +63,21 @@ TEST(Studio, AnOpenBoxIsSeenThroughItsOpening) {
     EXPECT_GT(glm::dot(camera.position, out), 2.0) << side;
     EXPECT_LT(glm::dot(studioSun(camera), out), 0.0) << side;
   }
-  // From outside: solid ones, closed rooms, and a box that is open above.
+  // From outside: solid ones, and a box that is open above.
   EXPECT_LT(studioView(box({2, 1, 2}, 1.0)).direction.x, -0.4);
-  EXPECT_LT(studioView(box({2, 1, 2}, -1.0)).direction.x, -0.4);
   EXPECT_LT(studioView(box({2, 1, 2}, -1.0, 2)).direction.x, -0.4);
+}
+
+TEST(Studio, AClosedRoomWithLightOfItsOwnIsSeenFromWithin) {
+  for (const glm::dvec3& half : {glm::dvec3(2, 1, 3), glm::dvec3(5, 0.2, 0.1), glm::dvec3(1, 9, 1)}) {
+    Scene room = box(half, -1.0);
+    const Camera camera = studioView(room);
+    EXPECT_TRUE(glm::all(glm::lessThan(glm::abs(camera.position), half))) << half.x;
+    EXPECT_GT(glm::dot(camera.direction, -camera.position), 0.5 * std::hypot(half.x, half.z)) << "from one end";
+    EXPECT_EQ(camera.direction.y, 0.0);
+    room.defaultSun = true;  // no other light: within it would be black
+    EXPECT_GT(glm::length(studioView(room).position), glm::length(half)) << half.x;
+  }
 }
 
 // The floor's radiance is that below the horizon: albedo / pi of the irradiance by the sun and by the picture's upper
