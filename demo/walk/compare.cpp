@@ -45,6 +45,7 @@ void Compare::record(const gl::Framebuffer& target, glm::ivec2 size, const Input
   compose_->set("sideBySide", in.layout == Layout::sideBySide ? 1 : 0);
   compose_->set("zoom", in.zoom);
   compose_->set("centre", in.centre);
+  compose_->set("interpolates", in.interpolates);
   compose_->set("exposure", in.exposure);
   compose_->set("errorScale", in.errorScale);
   glm::vec4 magnifier(0.0f);

@@ -33,6 +33,7 @@ class Compare {
     float split = 0.5f;  ///< position of the wipe
     float zoom = 1.0f;
     glm::vec2 centre{0.5f};  ///< point of the picture, (0,0) bottom left
+    bool interpolates = false;  ///< the pictures are coarser than the target for a while
     float exposure = 1.0f;
     const gl::Texture *reference = nullptr, *standardError = nullptr;  ///< if errors are shown
     float errorScale = 1.0f;  ///< radiance

@@ -538,6 +538,7 @@ void showRecord(Ui& ui, WalkState& s, Host& host) {
   }
   std::string folder = s.shotFolder.string();
   if (textField(ui, "into", folder)) s.shotFolder = folder;
+  // Key frames, then the window
   ImGui::Separator();
   if (button(ui, "add key frame")) {
     const Camera& c = s.camera->camera();
@@ -599,6 +600,10 @@ void showRecord(Ui& ui, WalkState& s, Host& host) {
   explain(
       "Size of the computed picture relative to the window's, per side. 2: four samples per pixel, averaged after the "
       "tone curve.");
+  checkbox(ui, "coarser in motion", s.coarseInMotion);
+  explain(
+      "While something moves and whole frames take longer than 0.2 s, a half or a quarter of the picture's side is "
+      "computed; at rest the whole. Not while a video is recorded.");
 }
 
 }  // namespace

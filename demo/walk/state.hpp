@@ -117,6 +117,8 @@ struct WalkState {
   float exposure = 1.0f;
   bool autoExposure = false;
   float renderScale = 1.0f;  ///< picture's side over the window's; 2: four samples per pixel
+  bool coarseInMotion = true;  ///< motion_scale.hpp, if this is not measured or recorded
+  float motionScale = 1.0f;  ///< that of the last frame
 
   // Debug view
   std::string stage;  ///< one of the shown side's Renderer::stagePictures(); empty: the frame

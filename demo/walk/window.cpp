@@ -44,6 +44,7 @@ constexpr double kSmoothSeconds = 0.3;  // slower changes of light wait until th
 constexpr double kBetweenFrames = 1.0 / 30.0, kBetweenNotes = 0.1;  // seconds, while a solution is made
 constexpr double kLongGap = 0.3;  // seconds, to be told
 constexpr std::size_t kMostEdits = 100;
+constexpr double kRestsFrom = 0.3;  // seconds without motion until the picture becomes whole
 constexpr int kStillFrames = 3;  // still frames before the reference of a view is started
 constexpr std::size_t kPlotFrames = 240;
 
@@ -71,7 +72,8 @@ WalkWindow::WalkWindow(const WalkOptions& options, Host& host, const gl::Context
       overlay_(programs, state_),
       reference_(context, programs, state_),
       recorder_(state_),
-      solutions_(watchSolutions([this](const RadiosityStage& stage) { return goesOnSolving(stage); }, true)) {
+      solutions_(watchSolutions([this](const RadiosityStage& stage) { return goesOnSolving(stage); }, true)),
+      motionScale_(context.capabilities().softwareRenderer) {
   state_.rendererName = context.capabilities().renderer;
   if (!options.playInput.empty()) player_.emplace(options.playInput);
   playedSize_ = parseSize(options.picture.size);
@@ -642,8 +644,8 @@ bool WalkWindow::allSettled() const {
 void WalkWindow::makeReference(double frameSeconds) {
   const double now =
       player_ ? kPlayedFrame * frames_ : std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
-  reference_.doShare(frameSeconds,
-                     {still_ >= kStillFrames, allSettled(), now, [this](const std::string& what) { breathe(what); }});
+  reference_.doShare(frameSeconds, {still_ >= kStillFrames && state_.motionScale == 1.0f, allSettled(), now,
+                                    [this](const std::string& what) { breathe(what); }});
 }
 
 void WalkWindow::readPixel(const Compare::Inputs& inputs) {
@@ -787,6 +789,7 @@ void WalkWindow::compose() {
   inputs.split = state_.split;
   inputs.zoom = state_.zoom;
   inputs.centre = state_.centre;
+  inputs.interpolates = state_.motionScale < 1.0f;
   inputs.exposure = state_.exposure;
   if (referenceThere) {
     inputs.reference = &state_.reference->mean();
@@ -835,17 +838,30 @@ void WalkWindow::resizeTo(glm::ivec2 window) {
   // An open panel gets the right part of the window if most of the window remains.
   const int panel = state_.panel ? Panel::widthOf(host_.contentScale()) : 0;
   view_ = {window_.x > 2 * panel ? window_.x - panel : window_.x, window_.y};
-  for (SideState& side : state_.sides)
-    if (side.renderer && side.renderer->size() != pictureSize()) {
-      side.renderer->resize(pictureSize());
-      side.settled = false;
-      side.judgement.clear();
-      changed();
-    }
+  if (resizePictures()) changed();
+}
+
+bool WalkWindow::resizePictures() {
+  bool isOther = false;
+  for (SideState& side : state_.sides) {
+    if (!side.renderer || side.renderer->size() == pictureSize()) continue;
+    side.renderer->resize(pictureSize());
+    side.settled = false;
+    side.judgement.clear();
+    isOther = true;
+  }
+  return isOther;
 }
 
 glm::ivec2 WalkWindow::pictureSize() const {
-  return glm::max(glm::ivec2(glm::vec2(view_) * state_.renderScale), glm::ivec2(1));
+  return glm::max(glm::ivec2(glm::vec2(view_) * state_.renderScale * state_.motionScale), glm::ivec2(1));
+}
+
+/// What is measured, played or kept is whole.
+bool WalkWindow::mayBeCoarse() const {
+  const bool measures = !options_.common.json.empty() || options_.frames > 0;
+  const bool keeps = recorder_.isRecording() || state_.records || state_.shotWanted;
+  return state_.coarseInMotion && host_.kind() == HostKind::window && !player_ && !measures && !keeps;
 }
 
 void WalkWindow::buildUi(double seconds) {
@@ -954,7 +970,7 @@ void WalkWindow::pace(Clock::time_point start) {
 bool WalkWindow::rests() const {
   const bool measures = !options_.common.json.empty() || options_.frames > 0;
   if (player_ || measures || state_.drawsAtRest || host_.kind() != HostKind::window) return false;
-  const bool isStill = still_ > kStillFrames && quiet_ > kStillFrames && allSettled();
+  const bool isStill = still_ > kStillFrames && quiet_ > kStillFrames && state_.motionScale == 1.0f && allSettled();
   const bool moves =
       (state_.path.follows && !state_.path.paused) || state_.timeRuns() || input_.move != glm::dvec3(0.0);
   const bool works = state_.liveReferenceOn || state_.autoExposure || recorder_.isRecording() || state_.records;
@@ -1003,6 +1019,10 @@ void WalkWindow::run() {
     // The picture.
     moveCamera(dt);
     recorder_.beginCapture(frames_ == options_.capture);
+    const auto drawing = Clock::now();
+    if (!mayBeCoarse()) motionScale_.showWhole();
+    state_.motionScale = mayBeCoarse() ? motionScale_.next(restSeconds_ < kRestsFrom) : 1.0f;
+    if (resizePictures()) still_ = 0;
     draw();
     makeReference(measured);
     compose();
@@ -1016,9 +1036,11 @@ void WalkWindow::run() {
       host_.present(pictureTarget_.id(), window_);
     }
     recorder_.endCapture();
+    if (mayBeCoarse()) motionScale_.took(secondsSince(drawing));
     ++still_;
     ++quiet_;
     ++frames_;
+    restSeconds_ += secondsSince(start);
     state_.messageAge += dt;
     sinceHint_ += dt;
     if (sinceHint_ > kHintSeconds) state_.hint = false;

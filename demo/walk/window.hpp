@@ -6,6 +6,7 @@
 #include "walk/input_file.hpp"
 #include "walk/keys.hpp"
 #include "walk/options.hpp"
+#include "walk/motion_scale.hpp"
 #include "walk/overlay.hpp"
 #include "walk/recorder.hpp"
 #include "walk/reference_work.hpp"
@@ -79,8 +80,14 @@ class WalkWindow {
   bool drawsUi() const;
   Recorder::Shown shownPicture() const { return {picture_, view_}; }
   glm::ivec2 pictureSize() const;  ///< size of the computed picture
+  /// Gives the renderers that size; whether any had another one.
+  bool resizePictures();
+  bool mayBeCoarse() const;
   const gl::Texture* radianceOf(int side) const;
-  void changed() { still_ = 0; }
+  void changed() {
+    still_ = 0;
+    restSeconds_ = 0.0;
+  }
 
   const WalkOptions& options_;
   Host& host_;
@@ -108,7 +115,9 @@ class WalkWindow {
   gl::Texture picture_;  ///< what is presented, unless it is the renderer's own picture
   gl::Framebuffer pictureTarget_;
   Camera lastCamera_;
-  int still_ = 0;  ///< frames since anything moved
+  int still_ = 0;  ///< frames since anything moved, or the picture's size changed
+  double restSeconds_ = 0.0;  ///< since anything moved
+  MotionScale motionScale_;
   int quiet_ = 0;  ///< frames since there was input
   bool touched_ = false;  ///< there was input, so the walk does not end by itself
   bool stop_ = false;

@@ -124,6 +124,8 @@ bool IrradianceCacheFrame::record(gl::TimeQuery& timer, const FrameView& view, F
     reflections_->clear();
     return false;
   }
+  // A live picture's first frame has no records yet: reflections of it would be paths of many surfaces.
+  const bool reflects = reflections_ && (effort.wholePicture || counts.frame > 0);
   const bool mapsAreNew = hasMaps() ? maps_->willBeDrawn() : !parts_.settings.reuse;
   const std::vector<ReflectiveShadowMap::Outputs> none;
   const std::vector<ReflectiveShadowMap::Outputs>& maps = maps_ && !isLit ? maps_->record(timer) : none;
@@ -134,8 +136,9 @@ bool IrradianceCacheFrame::record(gl::TimeQuery& timer, const FrameView& view, F
   const IrradianceCache::Inputs seen = inputs(view, maps, mapsAreNew, effort.fadesIn);
   if (isLit) cache_.show(seen);
   else cache_.update(seen, rounds);
-  if (reflections_)
+  if (reflects)
     reflections_->record(view.sample, share, visible_, seen.worldFromClip, [&] { cache_.bindForRays(); });
+  else if (reflections_) reflections_->clear();
   return true;
 }
 

@@ -39,8 +39,9 @@ layout(std430, binding = 4) readonly restrict buffer LampBlock { PathLight lamps
 const float kRays = 0.25, kNoRays = 0.5;  // alpha up to which rays alone show a coat, and from which none do
 const uint kMostSurfaces = 12u + 12u * uint(BODIES) + 24u * uint(CLOUDS);  // and collisions, along a ray
 const uint kMostBounces = 4u;             // beyond records
+const float kLampRays = 2.0;              // on average, from a surface that a ray has found
 const uint kMostBoundaries = 4u;          // between a surface in glass or water and a lamp
-const uint kPurposeBody = 5u, kPurposeCloud = 6u, kPurposeCloudWay = 7u, kPurposeCloudLight = 8u;
+const uint kPurposeBody = 5u, kPurposeCloud = 6u, kPurposeCloudWay = 7u, kPurposeCloudLight = 8u, kPurposeLamp = 9u;
 
 bool counts(uint scatterings) { return scatterings >= tracer.minScatterings && scatterings <= tracer.maxScatterings; }
 
@@ -67,23 +68,38 @@ float shareOfLamp(Ray ray, uint triangle, bool isWithin) {
   return 0.0;
 }
 
-// Irradiance from sun, spots and omnidirectional lamps.
-vec3 lampIrradiance(Surface surface, uint triangle, bool isWithin) {
+#if LAMPS
+// Irradiance from a lamp if nothing is between; sets the ray to it from a point above the surface.
+vec3 unshadowed(int i, Surface surface, ShadowStart start, out Ray ray) {
+  PathLight lamp = lamps[i];
+  bool infinite = lamp.kind == PATH_LIGHT_SUN;
+  vec3 away = infinite ? -lamp.b : lamp.a - surface.position;
+  float distance2 = infinite ? 1.0 : dot(away, away);
+  vec3 direction = away * inversesqrt(max(distance2, 1e-30)), arriving = lamp.c / max(distance2, 1e-30);
+  if (lamp.kind == PATH_LIGHT_SPOT)
+    arriving *= spotFalloff(-dot(direction, lamp.b), uintBitsToFloat(lamp.p), uintBitsToFloat(lamp.q));
+  ray = infinite ? Ray(start.origin, 0.0, direction, 3e38) : Ray(start.origin, 0.0, lamp.a - start.origin, 1.0);
+  float cosine = dot(direction, surface.normal);
+  return cosine > 0.0 && dot(direction, start.normal) > 0.0 ? cosine * arriving : vec3(0.0);
+}
+#endif
+
+// Irradiance from sun, spots and omnidirectional lamps: along kLampRays rays on average, or fewer, chosen by what they
+// would give, by systematic sampling [Kitagawa1996]. xi: 0 to 1.
+vec3 lampIrradiance(Surface surface, uint triangle, bool isWithin, float xi) {
   vec3 sum = vec3(0.0);
 #if LAMPS
   ShadowStart start = shadowStart(surface, triangle);
-  for (int i = 0; i < lamps.length() && i < LAMPS; ++i) {
-    PathLight lamp = lamps[i];
-    bool infinite = lamp.kind == PATH_LIGHT_SUN;
-    vec3 away = infinite ? -lamp.b : lamp.a - surface.position;
-    float distance2 = infinite ? 1.0 : dot(away, away);
-    vec3 direction = away * inversesqrt(max(distance2, 1e-30)), arriving = lamp.c / max(distance2, 1e-30);
-    if (lamp.kind == PATH_LIGHT_SPOT)
-      arriving *= spotFalloff(-dot(direction, lamp.b), uintBitsToFloat(lamp.p), uintBitsToFloat(lamp.q));
-    float cosine = dot(direction, surface.normal);
-    if (!(cosine > 0.0 && dot(direction, start.normal) > 0.0) || all(equal(arriving, vec3(0.0)))) continue;
-    Ray ray = infinite ? Ray(start.origin, 0.0, direction, 3e38) : Ray(start.origin, 0.0, lamp.a - start.origin, 1.0);
-    sum += cosine * arriving * shareOfLamp(ray, start.skip, isWithin);
+  Ray ray;
+  float all = 0.0, passed = 0.0;
+  for (int i = 0; i < lamps.length() && i < LAMPS; ++i) all += largestOf(unshadowed(i, surface, start, ray));
+  for (int i = 0; i < lamps.length() && i < LAMPS && all > 0.0; ++i) {
+    vec3 arriving = unshadowed(i, surface, start, ray);
+    float expected = kLampRays * largestOf(arriving) / all;  // rays
+    if (expected < 1.0) passed += expected;
+    if (!(expected >= 1.0 || passed > xi)) continue;
+    if (expected < 1.0) xi += 1.0;
+    sum += arriving / min(expected, 1.0) * shareOfLamp(ray, start.skip, isWithin);
   }
 #endif
   return sum;
@@ -202,10 +218,10 @@ struct Entry {
 Entry entry;
 
 // At a surface that a ray has refracted at, from outside.
-void enterThrough(Surface surface, uint triangle) {
+void enterThrough(Surface surface, uint triangle, PathNumbers numbers, uint event) {
   entry.surface = surface;
   entry.light = (cachedIrradiance(surface.position + cache.rayOrigin, surface.normal, entry.isKnown) +
-                 lampIrradiance(surface, triangle, false)) / kPi;
+                 lampIrradiance(surface, triangle, false, randomPair(numbers, event, kPurposeLamp).x)) / kPi;
 }
 #endif
 
@@ -306,7 +322,9 @@ vec3 radianceAlong(Ray ray, uint triangle, vec3 throughput, uint scatterings, Pa
       ++scatterings;
       if (scatterings > tracer.maxScatterings) break;
       throughput *= wholeAlbedoAt(surface);
-      if (counts(scatterings)) sum += throughput / kPi * lampIrradiance(surface, triangle, isWithin);
+      if (counts(scatterings))
+        sum += throughput / kPi *
+               lampIrradiance(surface, triangle, isWithin, randomPair(numbers, 1u + k, kPurposeLamp).x);
       bool found;
       vec3 kept = cachedIrradiance(surface.position + cache.rayOrigin, surface.normal, found);
       if (found) {
@@ -331,7 +349,7 @@ vec3 radianceAlong(Ray ray, uint triangle, vec3 throughput, uint scatterings, Pa
     } else if (materials[surface.material].kind != PATH_NONE) {
       ++scatterings;
 #if BODIES
-      if (side < 0.0 && surface.front && bodyAround() >= 0) enterThrough(surface, triangle);
+      if (side < 0.0 && surface.front && bodyAround() >= 0) enterThrough(surface, triangle, numbers, 1u + k);
 #else
       if (side < 0.0) isWithin = surface.front;
       isSampled = isSampled || bounces > 0u;
@@ -365,7 +383,7 @@ vec3 reflectedBy(Surface surface, uint triangle, vec3 view, PathNumbers numbers,
       if (!passes(surface, way == 0, throughput, direction, side)) return sum;
       if (isGlass && way == 1 && side > 0.0) break;  // total reflection has been counted
 #if BODIES
-      if (side < 0.0 && bodyAround() >= 0) enterThrough(surface, triangle);
+      if (side < 0.0 && bodyAround() >= 0) enterThrough(surface, triangle, numbers, 0u);
       else aroundRay = ivec4(-1);
 #endif
       vec3 start = offsetRay(surface.position, side * surface.geometricNormal, surface.magnitude);

@@ -16,6 +16,7 @@ uniform float split;       // fraction of the width where the right picture begi
 uniform bool sideBySide;
 uniform float zoom;        // 1: the picture fits
 uniform vec2 centre;       // point of the picture, 0..1, shown in the middle of the target
+uniform bool interpolates;  // between texels, as they are shown: of a picture that is coarser for a while
 uniform float exposure;
 uniform float errorScale;  // radiance at the end of the signed colours
 uniform vec4 magnifier;    // centre in pixels of the target, radius in pixels (0: none), factor
@@ -46,9 +47,8 @@ vec3 scaleColor(int view, float t) {
   return view == SHOW_Z ? zColor(MOST_Z * (2.0 * t - 1.0)) : heat(t);
 }
 
-vec3 shown(bool right, vec2 place) {
-  ivec2 size = right ? textureSize(rightPicture, 0) : textureSize(leftPicture, 0);
-  ivec2 texel = clampedInt(floor(place), ivec2(0), size - 1);
+vec3 shownAt(bool right, ivec2 texel) {
+  texel = clamp(texel, ivec2(0), (right ? textureSize(rightPicture, 0) : textureSize(leftPicture, 0)) - 1);
   vec3 radiance = right ? texelFetch(rightPicture, texel, 0).rgb : texelFetch(leftPicture, texel, 0).rgb;
   int view = right ? views.y : views.x;
   if (any(isnan(radiance)) || any(isinf(radiance))) return vec3(0.0, 1.0, 0.0);
@@ -64,6 +64,15 @@ vec3 shown(bool right, vec2 place) {
     return heat(max(d.x, max(d.y, d.z)) / max(max(reference.x, max(reference.y, reference.z)), 1e-30));
   }
   return zColor(difference / max(luminance(noise), 1e-30));
+}
+
+vec3 shown(bool right, vec2 place) {
+  const int kMost = 1 << 24;
+  if (!interpolates) return shownAt(right, clampedInt(floor(place), ivec2(-1), ivec2(kMost)));
+  vec2 corner = floor(place - 0.5), share = place - 0.5 - corner;
+  ivec2 texel = clampedInt(corner, ivec2(-1), ivec2(kMost));
+  return mix(mix(shownAt(right, texel), shownAt(right, texel + ivec2(1, 0)), share.x),
+             mix(shownAt(right, texel + ivec2(0, 1)), shownAt(right, texel + ivec2(1, 1)), share.x), share.y);
 }
 
 void main() {
@@ -93,14 +102,17 @@ void main() {
   vec2 region = sideBySide ? vec2(0.5 * pixels.x, pixels.y) : pixels;
   vec2 middle = sideBySide ? vec2(right ? 0.75 : 0.25, 0.5) * pixels : 0.5 * pixels;
   vec2 size = vec2(right ? textureSize(rightPicture, 0) : textureSize(leftPicture, 0));
-  float pixelsOfTexel = zoom * min(region.x / size.x, region.y / size.y);
+  vec2 filled = region / size;
+  float fit = min(filled.x, filled.y);
+  // The proportions of a coarse picture are up to a texel off, which no bar is to show.
+  vec2 pixelsOfTexel = zoom * (interpolates && all(lessThan(filled, vec2(1.02 * fit))) ? filled : vec2(fit));
   vec2 place = (pixel - middle) / pixelsOfTexel + centre * size;  // in texels
   if (any(lessThan(place, vec2(0.0))) || any(greaterThanEqual(place, size))) {
     displayColor = vec4(0.08, 0.08, 0.08, 1.0);
     return;
   }
-  float side = 1.0 / (pixelsOfTexel * magnified / zoom);  // width of a pixel, in texels
-  int taps = clampedInt(ceil(side - 0.01), 1, 4);
+  vec2 side = 1.0 / (pixelsOfTexel * magnified / zoom);  // of a pixel, in texels
+  int taps = clampedInt(ceil(max(side.x, side.y) - 0.01), 1, 4);
   vec3 sum = vec3(0.0);
   for (int y = 0; y < 4 && y < taps; ++y)
     for (int x = 0; x < 4 && x < taps; ++x)

@@ -285,6 +285,37 @@ TEST_F(ReflectionsTest, AMirrorShowsTheRecords) {
   EXPECT_NEAR(sum / all, 1.0, 0.05);
 }
 
+// Rays to two lamps of nine, chosen by what they would give: unhidden ones exactly, those behind a plate on average.
+TEST_F(ReflectionsTest, AMirrorShowsTheLightOfManyLamps) {
+  for (const bool hides : {false, true}) {
+    SceneBuilder builder;
+    const int wall = builder.material(glm::vec3(0.02f)),  // hardly any light is reflected twice
+        mirror = builder.material(glm::vec3(0.0f)), black = builder.material(glm::vec3(0.0f));
+    builder.materialAt(mirror) = coated(glm::vec3(0.0f), glm::vec3(0.8f), 0.0f, Bsdf::mirror);
+    builder.plate({0, 0, 0}, {8, 0, 0}, {0, 8, 0}, mirror);
+    builder.plate({0, 0, 6}, {0, 8, 0}, {8, 0, 0}, wall);  // behind the camera
+    if (hides) builder.plate({0, 1.2, 4}, {0, 1.0, 0}, {8, 0, 0}, black);
+    Scene scene = builder.scene();
+    scene.sun.reset();
+    for (int i = 0; i < 9; ++i) {
+      const double x = 0.4 * (i - 4);
+      scene.points.push_back({{x, i % 2 == 0 ? 2.4 : -0.5, 3.0 - 0.1 * i}, glm::vec3(static_cast<float>(1 + i % 3))});
+    }
+    const Camera camera = lookingAt({0, 0, 2}, {0, 0, 0}, 0.5);
+    RenderSettings s = settings();
+    s.pixelSamples = 16;
+    const Image image = drawn(scene, camera, s), expected = tracer(scene, camera, sized(32), 256).mean();
+    double sum = 0.0, all = 0.0, worst = 0.0;
+    for (std::size_t k = 0; k < image.pixels.size(); ++k) {
+      const double is = static_cast<double>(image.pixels[k].y), should = static_cast<double>(expected.pixels[k].y);
+      sum += is, all += should;
+      worst = std::max(worst, std::abs(is - should));
+    }
+    EXPECT_NEAR(sum / all, 1.0, 4e-3) << hides;
+    EXPECT_LT(worst, (hides ? 0.8 : 0.06) * all / static_cast<double>(image.pixels.size())) << hides;
+  }
+}
+
 TEST_F(ReflectionsTest, AllIsDirectPlusIndirect) {
   Scene scene = boxWithMirror(coated(glm::vec3(0.0f), glm::vec3(0.9f), 0.0f, Bsdf::mirror));
   scene.environment.emplace().radiance = glm::vec3(0.4f);
