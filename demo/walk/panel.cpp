@@ -538,7 +538,7 @@ void showRecord(Ui& ui, WalkState& s, Host& host) {
   }
   std::string folder = s.shotFolder.string();
   if (textField(ui, "into", folder)) s.shotFolder = folder;
-  // Key frames, then the window
+  // Key frames
   ImGui::Separator();
   if (button(ui, "add key frame")) {
     const Camera& c = s.camera->camera();
@@ -585,6 +585,7 @@ void showRecord(Ui& ui, WalkState& s, Host& host) {
     s.path.follows = true;
     s.path.paused = false;
   }
+  // The window
   ImGui::Separator();
   bool full = host.isFullScreen();
   if (checkbox(ui, "full screen", full)) host.setFullScreen(full);
