@@ -171,7 +171,9 @@ SequenceErrors sequenceErrors(std::span<const Image> pictures, std::span<const R
       if (here < least) least = here, errors.lag = late = step * kStep;
     }
   }
-  if (changeFrom(references, variances, 0).isSeen()) errors.ghosts = ghosts(pictures, references, late);
+  // Two moments do not tell a pixel's gain from what it still shows.
+  if (pictures.size() >= 3 && changeFrom(references, variances, 0).isSeen())
+    errors.ghosts = ghosts(pictures, references, late);
 
   errors.flicker = kNone;
   double ours = 0.0, theirs = 0.0, noise = 0.0;

@@ -25,9 +25,9 @@ namespace lucerna::measure {
 struct SequenceErrors {
   std::vector<double> l2;  ///< of each picture, sqrt(sum d^2 / sum r^2)
   double mean = 0.0, worst = 0.0;  ///< of those
-  double lag = 0.0;  ///< in moments; NaN where nothing changes by more than its noise
-  double ghosts = 0.0;  ///< NaN likewise
-  double flicker = 0.0;  ///< NaN likewise, and with fewer than three pictures
+  // NaN where nothing changes by more than its noise, and with fewer than three pictures:
+  double lag = 0.0;  ///< in moments
+  double ghosts = 0.0, flicker = 0.0;
 };
 
 /// Of at least two pictures, as many as references, all of one size.

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <random>
+#include <span>
 #include <vector>
 
 namespace lucerna::measure {
@@ -126,6 +127,15 @@ TEST_F(Sequence, FlickerIsWhatTheReferencesLack) {
       all2 += d * d;
     }
   EXPECT_NEAR(sequenceErrors(blinking, still).flicker, std::sqrt(all2 / own2), 1e-3);
+}
+
+TEST_F(Sequence, TwoPicturesHaveErrorsAlone) {
+  const std::vector<Reference> all = references();
+  const std::vector<Image> both{bar(2), bar(2)};
+  const SequenceErrors e = sequenceErrors(both, std::span(all).subspan(2, 2));
+  EXPECT_EQ(e.l2[0], 0.0);
+  EXPECT_GT(e.l2[1], 0.1);
+  EXPECT_TRUE(std::isnan(e.lag) && std::isnan(e.ghosts) && std::isnan(e.flicker));
 }
 
 TEST_F(Sequence, WhatDoesNotChangeHasNoLag) {
