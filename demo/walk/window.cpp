@@ -857,10 +857,10 @@ glm::ivec2 WalkWindow::pictureSize() const {
   return glm::max(glm::ivec2(glm::vec2(view_) * state_.renderScale * state_.motionScale), glm::ivec2(1));
 }
 
-/// What is measured, played or kept is whole.
+/// What is measured, played, kept or read pixel by pixel is whole.
 bool WalkWindow::mayBeCoarse() const {
   const bool measures = !options_.common.json.empty() || options_.frames > 0;
-  const bool keeps = recorder_.isRecording() || state_.records || state_.shotWanted;
+  const bool keeps = recorder_.isRecording() || state_.records || state_.shotWanted || state_.magnifier;
   return state_.coarseInMotion && host_.kind() == HostKind::window && !player_ && !measures && !keeps;
 }
 

@@ -58,17 +58,17 @@ glm::dvec3 spread(int i, bool cosine) {
   return {r * std::cos(angle), y, r * std::sin(angle)};
 }
 
-/// Rays from the middle: how many meet a front, and the mean of the directions of those that meet nothing.
+/// Rays from a point: how many meet a front, and the mean of the directions of those that meet nothing.
 struct Surroundings {
   int fronts = 0;
   glm::dvec3 opening{0.0};
 };
-Surroundings lookAround(const Scene& scene) {
+Surroundings lookAround(const Scene& scene, const glm::dvec3& point) {
   Surroundings seen;
   if (scene.triangleCount() > kMostTriangles) return seen;
   for (int i = 0; i < kRays; ++i) {
     const glm::dvec3 ray = spread(i, false);
-    const Hit hit = firstHit(scene, scene.main().centre(), ray);
+    const Hit hit = firstHit(scene, point, ray);
     if (!std::isfinite(hit.distance)) seen.opening += ray;
     else if (hit.ofFront) ++seen.fronts;
   }
@@ -86,14 +86,36 @@ std::optional<glm::dvec3> openingOf(const Surroundings& seen) {
   return out;
 }
 
-/// Along the longest level line through the middle of a closed room, from close to its end.
-Camera viewWithin(const Scene& scene) {
+/// The scene's middle, and where its light comes from: points that a room may enclose.
+std::vector<glm::dvec3> pointsWithin(const Scene& scene) {
+  std::vector<glm::dvec3> points{scene.main().centre()};
+  for (const PointLight& lamp : scene.points) points.push_back(lamp.position);
+  for (const SpotLight& lamp : scene.spots) points.push_back(lamp.position);
+  const double nudge = 1e-3 * glm::length(scene.main().extent());
+  for (const Mesh& mesh : scene.meshes) {
+    if (scene.materials[static_cast<std::size_t>(mesh.material)].emission == glm::vec3(0.0f) || mesh.indexCount < 3)
+      continue;
+    const auto corner = [&](std::uint32_t k) {
+      return glm::dvec3(scene.vertices[scene.indices[mesh.firstIndex + k]].position);
+    };
+    const glm::dvec3 up = glm::cross(corner(1) - corner(0), corner(2) - corner(0));
+    if (glm::length(up) > 0.0) points.push_back((corner(0) + corner(1) + corner(2)) / 3.0 + nudge * glm::normalize(up));
+  }
+  constexpr std::size_t kMostPoints = 8;
+  points.resize(std::min(points.size(), kMostPoints));
+  return points;
+}
+
+/// Along the longest level line through a point of a closed room, half way up, from close to its end.
+Camera viewWithin(const Scene& scene, const glm::dvec3& point) {
   constexpr int kLines = 16;
   constexpr double kKeptFromWall = 0.1;  // of the way there
   Camera camera;
   camera.name = "default";
   camera.verticalFov = kFovWithin;
-  const glm::dvec3 middle = scene.main().centre();
+  const glm::dvec3 down(0.0, -1.0, 0.0);
+  const double below = firstHit(scene, point, down).distance, above = firstHit(scene, point, -down).distance;
+  const glm::dvec3 middle = point + (std::isfinite(below + above) ? 0.5 * (below - above) : 0.0) * down;
   double longest = 0.0;
   for (int i = 0; i < kLines; ++i) {
     const double angle = kPi * i / kLines;
@@ -132,9 +154,10 @@ void frame(Camera& camera, const Scene& scene, double fill) {
 }  // namespace
 
 Camera studioView(const Scene& scene) {
-  const Surroundings seen = lookAround(scene);
-  const std::optional<glm::dvec3> opening = openingOf(seen);
-  if (!opening && !scene.defaultSun && seen.fronts > kRays * 9 / 10) return viewWithin(scene);
+  const std::optional<glm::dvec3> opening = openingOf(lookAround(scene, scene.main().centre()));
+  if (!opening && !scene.defaultSun)
+    for (const glm::dvec3& point : pointsWithin(scene))
+      if (lookAround(scene, point).fronts > kRays * 9 / 10) return viewWithin(scene, point);
   Camera camera;
   camera.name = "default";
   camera.verticalFov = kFov;
@@ -168,7 +191,8 @@ Image studioSky(const DirectionalLight& sun, int height) {
 }
 
 bool glowsOutwards(const Scene& scene) {
-  if (scene.triangleCount() > kMostTriangles || lookAround(scene).fronts >= kRays / 2) return false;
+  if (scene.triangleCount() > kMostTriangles || lookAround(scene, scene.main().centre()).fronts >= kRays / 2)
+    return false;
   std::vector<std::array<glm::dvec3, 3>> triangles;
   std::vector<double> areas{0.0};  // summed
   for (const Mesh& mesh : scene.meshes) {

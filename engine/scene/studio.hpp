@@ -13,8 +13,8 @@ namespace lucerna {
 constexpr float kFloorAlbedo = 0.4f;
 
 /// A view of all vertices as they are, from a direction that shows three sides, or into an open box through its
-/// opening: they fill `kStudioFill` of a 16:9 picture's height or width. A closed room with light of its own is seen
-/// from within. Bounds must be those of the vertices.
+/// opening: they fill `kStudioFill` of a 16:9 picture's height or width. A closed room with light of its own, whose
+/// walls face inwards, is seen from within. Bounds must be those of the vertices.
 Camera studioView(const Scene& scene);
 constexpr double kStudioFill = 2.0 / 3.0;
 

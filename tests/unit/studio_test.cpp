@@ -75,6 +75,16 @@ TEST(Studio, AClosedRoomWithLightOfItsOwnIsSeenFromWithin) {
     EXPECT_TRUE(glm::all(glm::lessThan(glm::abs(camera.position), half))) << half.x;
     EXPECT_GT(glm::dot(camera.direction, -camera.position), 0.5 * std::hypot(half.x, half.z)) << "from one end";
     EXPECT_EQ(camera.direction.y, 0.0);
+    // Also around a pillar in its middle, by the lamp.
+    Scene ring = room;
+    ring.points.push_back({{0.7 * half.x, 0.0, 0.7 * half.z}, glm::vec3(1.0f)});
+    const auto first = static_cast<std::uint32_t>(ring.vertices.size());
+    const Scene pillar = box({0.2 * half.x, half.y, 0.2 * half.z}, 1.0);
+    ring.vertices.insert(ring.vertices.end(), pillar.vertices.begin(), pillar.vertices.end());
+    for (const std::uint32_t index : pillar.indices) ring.indices.push_back(first + index);
+    const Camera around = studioView(ring);
+    EXPECT_TRUE(glm::all(glm::lessThan(glm::abs(around.position), half))) << half.x;
+    EXPECT_FALSE(glm::all(glm::lessThan(glm::abs(around.position), 0.2 * half))) << half.x;
     room.defaultSun = true;  // no other light: within it would be black
     EXPECT_GT(glm::length(studioView(room).position), glm::length(half)) << half.x;
   }
