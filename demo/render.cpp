@@ -134,7 +134,7 @@ int runRender(RenderOptions options) {
   if (lowerExtension(options.output) == ".png") writePng(options.output, renderer.readDisplay());
   else writeImage(options.output, image);
   const glm::dvec3 mean = meanOf(image);
-  if (mean == glm::dvec3(0.0)) logWarning("{}", kBlackPicture);
+  if (mean == glm::dvec3(0.0)) logWarning("the picture is black: {}", kNoLightSeen);
   if (!options.common.quiet) {
     fmt::print("{}: {}x{}, {}, {}, mean radiance {:.6g} {:.6g} {:.6g}, {:.3f} s per frame on {}\n", options.output,
                image.width, image.height, options.picture.technique, options.picture.component, mean.x, mean.y, mean.z,

@@ -249,7 +249,7 @@ int renderPath(const CommonOptions& common, const PictureOptions& picture, const
   if (lowerExtension(output) == ".png") writePng(output, toneMapped(image, shared.exposure.value_or(scene.exposure)));
   else if (!output.empty())  // for a part, only the checkpoint may be wanted
     writeImage(output, image);
-  if (statistics.mean == glm::dvec3(0.0)) logWarning("{}", kBlackPicture);
+  if (statistics.mean == glm::dvec3(0.0)) logWarning("the picture is black: {}", kNoLightSeen);
   // After the picture, so that a full disk does not cost it.
   if (!path.checkpoint.empty()) save();
   else if (!isOfAnother) std::filesystem::remove(checkpoint);

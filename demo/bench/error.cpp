@@ -239,7 +239,8 @@ std::unique_ptr<ErrorBenchResult> runErrorBench(const gl::Context& context, gl::
   auto references = obtainReferences(plan.references(context, programs, options, folder / "references"));
   if (!references) return result;
   result->references = std::move(*references);
-  if (meanOf(result->references.all().mean) == glm::dvec3(0.0)) throwBadInput("the reference: {}", kBlackPicture);
+  if (meanOf(result->references.all().mean) == glm::dvec3(0.0))
+    throwBadInput("the reference is black: {}", kNoLightSeen);
   // Rows are judged by the reference in use: a better reference makes it another bench.
   claimFolder(folder, fmt::format("{}, {}, {}, scene {}, reference of {} samples", plan.title,
                                   options.deviations ? "deviations" : "sweeps", context.capabilities().renderer,

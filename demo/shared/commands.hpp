@@ -29,8 +29,8 @@ Work addMedia(Command app);
 Work addRadiosity(Command app);
 Work addCompare(Command app);
 
-constexpr const char* kBlackPicture =
-    "the picture is black: no light reaches what this view shows; --camera chooses another";
+/// Why a picture is black.
+constexpr const char* kNoLightSeen = "no light reaches what this view shows; --camera chooses another";
 
 /// --host, --json, --quiet: every subcommand has them.
 struct CommonOptions {

@@ -12,8 +12,7 @@ class MotionScale {
   float next(bool moves);
   /// The frame of next() took so many seconds. Those of motion set the scale: the finest that makes five a second.
   void took(double seconds);
-  /// Of the last next().
-  float scale() const;
+  /// The next frame is whole, without next().
   void showWhole() { shown_ = 0; }
 
  private:

@@ -392,7 +392,7 @@ void WalkWindow::loadWantedScene() {
     Spline path = pathOf(*scene);
     RenderSettings settings = state_.sides[0].options.parse();
     settings.size = state_.sides[0].renderer->size();
-    const bool isSolved = solves(settings.technique) && drawsWhileSolving();
+    const bool isSolved = solves(settings.technique) && mayVary();
     PictureOptions shown = state_.sides[0].options;
     const gl::BuildWatch watch([this](const std::string& name) { breathe("compiling " + name); });
     auto renderer =
@@ -474,7 +474,7 @@ void WalkWindow::make(SideState& side) {
     const gl::BuildWatch watch([this](const std::string& name) { breathe("compiling " + name); });
     if (solves(settings.technique)) {
       state_.solving.begin();
-      if (drawsWhileSolving()) {
+      if (mayVary()) {
         if (!side.renderer) {
           side.built = side.options;
           side.renderer = preview(*state_.scene, side.built);
@@ -543,8 +543,9 @@ void WalkWindow::takeBack(SideState& side) {
   side.builtAs = wantedOf(side.built);
 }
 
-/// Whether frames go on while a technique is solved. What is measured or played is the same on every machine.
-bool WalkWindow::drawsWhileSolving() const {
+/// Whether what is drawn may depend on the machine's speed, as frames do that go on while a technique is solved. What
+/// is measured or played is the same on every machine.
+bool WalkWindow::mayVary() const {
   return host_.kind() == HostKind::window && !player_ && options_.common.json.empty();
 }
 
@@ -859,9 +860,8 @@ glm::ivec2 WalkWindow::pictureSize() const {
 
 /// What is measured, played, kept or read pixel by pixel is whole.
 bool WalkWindow::mayBeCoarse() const {
-  const bool measures = !options_.common.json.empty() || options_.frames > 0;
   const bool keeps = recorder_.isRecording() || state_.records || state_.shotWanted || state_.magnifier;
-  return state_.coarseInMotion && host_.kind() == HostKind::window && !player_ && !measures && !keeps;
+  return state_.coarseInMotion && mayVary() && options_.frames == 0 && !keeps;
 }
 
 void WalkWindow::buildUi(double seconds) {
@@ -968,8 +968,7 @@ void WalkWindow::pace(Clock::time_point start) {
 
 /// Whether nothing would change by itself: the picture has converged, nothing moves, no message is about to go.
 bool WalkWindow::rests() const {
-  const bool measures = !options_.common.json.empty() || options_.frames > 0;
-  if (player_ || measures || state_.drawsAtRest || host_.kind() != HostKind::window) return false;
+  if (!mayVary() || options_.frames > 0 || state_.drawsAtRest) return false;
   const bool isStill = still_ > kStillFrames && quiet_ > kStillFrames && state_.motionScale == 1.0f && allSettled();
   const bool moves =
       (state_.path.follows && !state_.path.paused) || state_.timeRuns() || input_.move != glm::dvec3(0.0);
@@ -1020,8 +1019,9 @@ void WalkWindow::run() {
     moveCamera(dt);
     recorder_.beginCapture(frames_ == options_.capture);
     const auto drawing = Clock::now();
-    if (!mayBeCoarse()) motionScale_.showWhole();
-    state_.motionScale = mayBeCoarse() ? motionScale_.next(restSeconds_ < kRestsFrom) : 1.0f;
+    const bool mayBeCoarse = this->mayBeCoarse();
+    if (!mayBeCoarse) motionScale_.showWhole();
+    state_.motionScale = mayBeCoarse ? motionScale_.next(restSeconds_ < kRestsFrom) : 1.0f;
     if (resizePictures()) still_ = 0;
     draw();
     makeReference(measured);
@@ -1036,7 +1036,7 @@ void WalkWindow::run() {
       host_.present(pictureTarget_.id(), window_);
     }
     recorder_.endCapture();
-    if (mayBeCoarse()) motionScale_.took(secondsSince(drawing));
+    if (mayBeCoarse) motionScale_.took(secondsSince(drawing));
     ++still_;
     ++quiet_;
     ++frames_;

@@ -51,7 +51,7 @@ class WalkWindow {
   std::string wantedOf(const PictureOptions& options) const;  ///< of builtAs, were it up to date
   void make(SideState& side);
   void takeBack(SideState& side);
-  bool drawsWhileSolving() const;
+  bool mayVary() const;
   std::unique_ptr<Renderer> preview(const Scene& scene, PictureOptions& options);
   bool isWanted() const;
   bool drawBetween();

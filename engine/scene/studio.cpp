@@ -86,9 +86,19 @@ std::optional<glm::dvec3> openingOf(const Surroundings& seen) {
   return out;
 }
 
-/// The scene's middle, and where its light comes from: points that a room may enclose.
-std::vector<glm::dvec3> pointsWithin(const Scene& scene) {
-  std::vector<glm::dvec3> points{scene.main().centre()};
+constexpr int kMostBeside = kRays / 10;  // rays from within a closed room that meet no front
+
+/// As lookAround() counts, but for no longer than it takes to see that it is not.
+bool isEnclosed(const Scene& scene, const glm::dvec3& point) {
+  int beside = 0;
+  for (int i = 0; i < kRays && beside <= kMostBeside; ++i)
+    if (!firstHit(scene, point, spread(i, false)).ofFront) ++beside;
+  return beside <= kMostBeside;
+}
+
+/// Where the scene's light comes from: points that a room may enclose.
+std::vector<glm::dvec3> placesOfLamps(const Scene& scene) {
+  std::vector<glm::dvec3> points;
   for (const PointLight& lamp : scene.points) points.push_back(lamp.position);
   for (const SpotLight& lamp : scene.spots) points.push_back(lamp.position);
   const double nudge = 1e-3 * glm::length(scene.main().extent());
@@ -104,6 +114,15 @@ std::vector<glm::dvec3> pointsWithin(const Scene& scene) {
   constexpr std::size_t kMostPoints = 8;
   points.resize(std::min(points.size(), kMostPoints));
   return points;
+}
+
+/// A point within a closed room with light of its own: the scene's middle, from which `seen` is, or a lamp.
+std::optional<glm::dvec3> pointWithin(const Scene& scene, const Surroundings& seen) {
+  if (scene.defaultSun || scene.triangleCount() > kMostTriangles) return {};
+  if (seen.fronts >= kRays - kMostBeside) return scene.main().centre();
+  for (const glm::dvec3& point : placesOfLamps(scene))
+    if (isEnclosed(scene, point)) return point;
+  return {};
 }
 
 /// Along the longest level line through a point of a closed room, half way up, from close to its end.
@@ -154,10 +173,10 @@ void frame(Camera& camera, const Scene& scene, double fill) {
 }  // namespace
 
 Camera studioView(const Scene& scene) {
-  const std::optional<glm::dvec3> opening = openingOf(lookAround(scene, scene.main().centre()));
-  if (!opening && !scene.defaultSun)
-    for (const glm::dvec3& point : pointsWithin(scene))
-      if (lookAround(scene, point).fronts > kRays * 9 / 10) return viewWithin(scene, point);
+  const Surroundings seen = lookAround(scene, scene.main().centre());
+  const std::optional<glm::dvec3> opening = openingOf(seen);
+  if (!opening)
+    if (const auto point = pointWithin(scene, seen)) return viewWithin(scene, *point);
   Camera camera;
   camera.name = "default";
   camera.verticalFov = kFov;
